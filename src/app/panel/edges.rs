@@ -6,7 +6,7 @@ use egui::DragValue;
 
 use crate::app::interface::*;
 use crate::app::panel::Panel;
-use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::viewport::arrow::LoadRanges;
 use crate::app::viewport::objects::{
     self, Object, ObjectChange, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,
 };
@@ -269,7 +269,7 @@ fn add_moment(scene: &mut Scene, system: &System) {
     let mut edges = system.edges().iter().filter(|edge| can_carry_moment(system, edge)).map(Edge::name);
     let first = edge_for_moment(scene, system).filter(|name| !is_taken(name));
     if let Some(edge) = first.or_else(|| edges.find(|name| !is_taken(name)).map(str::to_owned)) {
-        let [usual, _] = moment_range(OpeningLoads::of(scene), &scene.material, system);
+        let [usual, _] = LoadRanges::new(OpeningLoads::of(scene), &scene.material, system).moment;
         scene.loads.push(Load::moment(&edge, usual));
     }
 }

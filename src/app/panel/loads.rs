@@ -2,8 +2,7 @@
 
 use crate::app::interface::*;
 use crate::app::panel::{Panel, combo, edges};
-use crate::app::viewport::arrow::{DOWN, force_range, polar_form, vector};
-use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::viewport::arrow::{DOWN, LoadRanges, polar_form, vector};
 use crate::scene::limits::Limit;
 
 /// Gravitational acceleration on earth, m/s².
@@ -49,7 +48,7 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let as_opened = forces(&document.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(panel.state.force_direction());
-    let [usual, largest] = force_range(document.opened, &scene.material, input.simulation.system());
+    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, input.simulation.system()).force;
     // A negative force can be typed for one in the opposite direction.
     let limit = const { keys::range("load.force") };
     let field = NumberField::new("Force", Limit { min: -limit.max, ..limit }, 0.0..=largest)
@@ -93,7 +92,7 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
             None => scene.loads.push(Load::gravity(vector(new, direction))),
         });
     }
-    let [usual, largest] = moment_range(document.opened, &scene.material, input.simulation.system());
+    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, input.simulation.system()).moment;
     let field = NumberField::new("Moment", const { keys::range("load.moment") }, -largest..=largest)
         .around(usual)
         .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");

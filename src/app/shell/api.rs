@@ -8,7 +8,6 @@ use crate::app::modes::learn;
 use crate::app::shell::lab::{Desk, Lab};
 use crate::app::shell::settings::Settings;
 use crate::app::viewport::camera_controller::Box2;
-use crate::app::viewport::handle::Handle;
 use crate::app::widgets::palette;
 use crate::render::Frame;
 use crate::simulation::SimulationError;
@@ -91,13 +90,13 @@ impl Lab {
     #[must_use]
     pub fn arrow_tips(&self) -> Vec<(usize, Pos2)> {
         let arrows = self.desk.viewport.arrows(&self.content());
-        arrows.iter().map(|arrow| (arrow.load(), arrow.tip())).collect()
+        arrows.iter().map(|arrow| (arrow.load, arrow.tip())).collect()
     }
 
     /// Returns the start points of force arrows, and the centres of moment arrows, in the window, points.
     #[must_use]
     pub fn arrow_feet(&self) -> Vec<Pos2> {
-        self.desk.viewport.arrows(&self.content()).iter().map(Handle::foot).collect()
+        self.desk.viewport.arrows(&self.content()).iter().map(|arrow| arrow.from).collect()
     }
 
     /// Returns the camera of the last [`Self::ui`].

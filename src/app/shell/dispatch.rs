@@ -7,7 +7,6 @@ use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
 use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::viewport::arrow::vector;
-use crate::app::viewport::handle::Pull;
 use crate::app::viewport::objects::Object;
 use crate::app::viewport::pointer::Interaction;
 
@@ -203,15 +202,15 @@ impl Lab {
         if let Some((Object::Load(load), _)) = interaction.dropped {
             self.desk.panel.force = Some(load);
         }
-        let dragged = interaction.load.and_then(|(load, pull)| {
+        let dragged = interaction.load.and_then(|(load, (value, direction))| {
             self.desk.panel.force = Some(load);
             let mut scene = self.scene().clone();
-            let (label, set) = match pull {
-                Pull::Force(magnitude, degrees) => {
+            let (label, set) = match direction {
+                Some(degrees) => {
                     self.desk.panel.force_direction = Some(degrees);
-                    ("Force", scene.set_force(load, vector(magnitude, degrees)))
+                    ("Force", scene.set_force(load, vector(value, degrees)))
                 }
-                Pull::Moment(moment) => ("Moment", scene.set_moment(load, moment)),
+                None => ("Moment", scene.set_moment(load, value)),
             };
             // An arrow always belongs to an existing load.
             (set.is_ok() && scene != *self.scene()).then_some((label, scene))

@@ -1,4 +1,6 @@
-//! Arrow of a force: its length, the position of its tip, and the force that a dragged tip sets.
+//! Arrows of forces and moments: their size, the position of their tip, and the load that a dragged tip sets.
+
+use std::f64::consts::TAU;
 
 use crate::app::interface::*;
 use crate::app::viewport::probe;
@@ -23,14 +25,24 @@ const LABEL: Vec2 = vec2(12.0, 32.0);
 const LOW_SHARE: f64 = 0.25;
 /// Length below which a dragged arrow is a force of zero, points.
 const NO_LENGTH: f32 = 0.5;
-/// Smallest ratio of the largest force of a slider to the force that the scene opens with.
-pub(crate) const MIN_SPAN: f64 = 4.0;
 /// Distance from a tip within which a press grabs it, points.
 pub(crate) const NEAR: f32 = 13.0;
 /// Step of the direction while Shift is down, degrees.
 const SNAP: f64 = 15.0;
 /// Default direction of a force of zero, degrees.
 pub(crate) const DOWN: f64 = -90.0;
+
+/// Radius at the start of the arrow of a moment, points; it grows by the pitch with every revolution, so that revolutions
+/// do not overlap.
+pub(super) const RADIUS: f64 = 24.0;
+pub(super) const PITCH: f64 = 9.0;
+/// Angles of the arrow of a zero moment and of the moment that the scene opens with, and additional angle per factor of ten
+/// above twice the opening moment, rad. One pixel along the arc of the opening moment is 1.5 % of it.
+const ANGLES: [f64; 3] = [TAU / 12.0, 0.375 * TAU, TAU / 4.0];
+/// Angle in the plane at which the arrow of a moment starts, rad.
+const START: f64 = TAU / 8.0;
+/// Radius around the centre, in points, inside which the pointer's angle is ignored.
+const MIDDLE: f32 = 5.0;
 
 /// Returns magnitude and direction (degrees) of a vector; the direction is `None` for the zero vector.
 pub(crate) fn polar_form([x, y]: [f64; 2]) -> (f64, Option<f64>) {
@@ -51,7 +63,7 @@ pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
 }
 
 /// Returns the smallest power of ten that is not below `value`, limited to a range without overflow.
-pub(crate) fn power_of_ten_above(value: f64) -> f64 {
+fn power_of_ten_above(value: f64) -> f64 {
     /// A value above a power of ten by rounding only counts as that power.
     const ROUNDING: f64 = 1e-9;
     10f64.powf((value.clamp(1e-6, 1e14).log10() - ROUNDING).ceil())
@@ -81,18 +93,35 @@ fn room(view: Rect, margin: Vec2, from: Pos2, direction: Vec2) -> f64 {
     along(from.x, direction.x, x).min(along(from.y, direction.y, y))
 }
 
-/// Returns the forces, N, that scale the arrows and sliders of a scene: the largest opening force and the largest force
-/// of sliders. For a scene without forces the first is the one that bends its body by about a third of its length under
-/// linear theory. The second is the largest one with a visible effect, rounded up to a power of ten: it strains the whole
-/// section by 1, or, for slender bodies, is a thousand times the force that bends the body by its length.
-pub(crate) fn force_range(opening: OpeningLoads, material: &Material, system: &System) -> [f64; 2] {
-    const TIMES: f64 = 1e3;
-    let [length, height] = system.strip();
-    let axial = material.young * material.thickness * height;
-    // 3EI/L² with I = t h³/12.
-    let bending = 0.25 * axial * (height / length).powi(2);
-    let usual = opening.force.unwrap_or_else(|| round_down(0.3 * bending));
-    [usual, power_of_ten_above(axial.min(TIMES * bending)).max(MIN_SPAN * usual)]
+/// Loads that scale the arrows and sliders of a scene: the largest one that it opens with, and the largest one of sliders.
+pub(crate) struct LoadRanges {
+    /// Forces, N. A scene that opens without forces has in the first place the one that bends its body by about a third of
+    /// its length under linear theory. The second is the largest one with a visible effect, rounded up to a power of ten: it
+    /// strains the whole section by 1, or, for slender bodies, is a thousand times the force that bends the body by its length.
+    pub force: [f64; 2],
+    /// Moments, N m. The second rolls the rest shape up once, rounded up to a power of ten. A scene that opens without moments
+    /// has in the first place about a tenth of that moment, or of the moment of the largest opening force about the other
+    /// end of the body, if that is smaller.
+    pub moment: [f64; 2],
+}
+
+impl LoadRanges {
+    pub(crate) fn new(opening: OpeningLoads, material: &Material, system: &System) -> Self {
+        const TIMES: f64 = 1e3;
+        /// Smallest ratio of the largest load of a slider to the load that the scene opens with.
+        const MIN_SPAN: f64 = 4.0;
+        let range = |usual: f64, largest| [usual, power_of_ten_above(largest).max(MIN_SPAN * usual)];
+        let [length, height] = system.strip();
+        let axial = material.young * material.thickness * height;
+        // 3EI/L² and 2πEI/L with I = t h³/12.
+        let bending = 0.25 * axial * (height / length).powi(2);
+        let rolling = TAU * material.young * material.thickness * height.powi(3) / (12.0 * length);
+        let of_force = opening.force.map_or(f64::INFINITY, |force| force * length);
+        Self {
+            force: range(opening.force.unwrap_or_else(|| round_down(0.3 * bending)), axial.min(TIMES * bending)),
+            moment: range(opening.moment.unwrap_or_else(|| round_down(0.1 * rolling.min(of_force))), rolling),
+        }
+    }
 }
 
 /// Returns the point of application of a load or a support: the middle of its edge, its node, or its point of the body;
@@ -116,27 +145,9 @@ pub(crate) fn point_of_application(
     (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
 }
 
-/// Arrow of a force, in window coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arrow {
-    /// Index of the force among the scene's loads.
-    pub load: usize,
-    /// Point of application.
-    pub from: Pos2,
-    /// Vector from the point of application to the tip, which stays in the view.
-    pub vector: Vec2,
-    /// Direction of the force.
-    direction: Vec2,
-    scale: LoadScale,
-    /// Magnitude of the force, N.
-    magnitude: f64,
-    /// Largest force that it can be dragged to, N.
-    largest: f64,
-}
-
 /// Scene and state whose load arrows are drawn.
 #[derive(Clone, Copy)]
-pub(crate) struct ForceArrows<'a> {
+pub(crate) struct LoadedBody<'a> {
     pub scene: &'a Scene,
     pub system: &'a System,
     /// Positions of the nodes, m.
@@ -149,41 +160,61 @@ pub(crate) struct ForceArrows<'a> {
     pub opening: OpeningLoads,
 }
 
-impl ForceArrows<'_> {
-    /// Returns the arrows of all forces that act at the current time; their tips are in the view if their bases are.
-    pub(crate) fn arrows(&self, projection: &Projection) -> Vec<Arrow> {
-        shortened(self.whole_arrows(projection), |arrow| room(projection.rect, LABEL, arrow.from, arrow.direction))
+impl LoadedBody<'_> {
+    /// Returns the arrows of all forces and moments that act at the current time; the tips of forces are in the view if
+    /// their bases are.
+    pub(crate) fn arrows(&self, projection: &Projection) -> Vec<LoadArrow> {
+        shortened(self.whole_arrows(projection), |from, direction| room(projection.rect, LABEL, from, direction))
     }
 
-    /// Returns the arrows of all forces that act at the current time, each long enough to be dragged, also out of the view.
-    pub(crate) fn whole_arrows(&self, projection: &Projection) -> Vec<Arrow> {
-        let mesh = self.system.mesh();
-        let [usual, largest] = force_range(self.opening, &self.scene.material, self.system);
-        let scale = scale(usual, projection.rect.size());
+    /// Returns the arrows of all forces and moments that act at the current time, each long enough to be dragged, also out
+    /// of the view.
+    pub(crate) fn whole_arrows(&self, projection: &Projection) -> Vec<LoadArrow> {
+        let ranges = LoadRanges::new(self.opening, &self.scene.material, self.system);
+        let ([usual, largest], view) = (ranges.force, projection.rect);
+        let scale_of_forces = scale(usual, view.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
-            let Load::Force { place, at_point, force, .. } = of else { return None };
-            let from = projection.point(point_of_application(mesh, self.positions, place, *at_point)?);
-            let (magnitude, degrees) = polar_form(*force);
-            let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
-            let direction = vec2(x as f32, -y as f32);
-            let vector = direction * scale.length(magnitude).max(STUB) as f32;
-            let arrow = Arrow { load, from, vector, direction, scale, magnitude, largest };
-            (arrow.from.is_finite() && arrow.vector.is_finite()).then_some(arrow)
+            let at = |place: &Place, at_point| {
+                let point = point_of_application(self.system.mesh(), self.positions, place, at_point)?;
+                Some(projection.point(point))
+            };
+            let arrow = match of {
+                Load::Force { place, at_point, force, .. } => {
+                    let (value, degrees) = polar_form(*force);
+                    let [x, y] = vector(1.0, degrees.unwrap_or(self.direction));
+                    let direction = vec2(x as f32, -y as f32);
+                    let vector = direction * scale_of_forces.length(value).max(STUB) as f32;
+                    let shape = ArrowShape::Straight { vector, direction, largest };
+                    LoadArrow { load, from: at(place, *at_point)?, value, scale: scale_of_forces, shape }
+                }
+                Load::Moment { edge, moment, .. } => {
+                    let center = at(&Place::from(edge.as_str()), false)?;
+                    LoadArrow::of_moment(load, center, *moment, ranges.moment[0])
+                }
+                Load::Gravity { .. } => return None,
+            };
+            arrow.tip().is_finite().then_some(arrow)
         });
-        let border = BORDER.min(LOW_SHARE as f32 * projection.rect.size());
-        let longest = WHOLE * scale.opening;
-        shortened(arrows.collect(), |arrow| longest.max(room(projection.rect, border, arrow.from, arrow.direction)))
+        let border = BORDER.min(LOW_SHARE as f32 * view.size());
+        let longest = WHOLE * scale_of_forces.opening;
+        shortened(arrows.collect(), |from, direction| longest.max(room(view, border, from, direction)))
     }
 }
 
-/// Shortens all arrows by the factor of the one that is longest relative to its `room`, so that the arrow of a larger force
-/// stays the longer one.
-fn shortened(mut arrows: Vec<Arrow>, room: impl Fn(&Arrow) -> f64) -> Vec<Arrow> {
-    let factor = |arrow: &Arrow| room(arrow).max(STUB) / f64::from(arrow.vector.length());
-    let factor = arrows.iter().map(factor).fold(1.0, f64::min) as f32;
+/// Shortens the arrows of all forces by the factor of the one that is longest relative to the `room` at its base along its
+/// direction, so that the arrow of a larger force stays the longer one.
+fn shortened(mut arrows: Vec<LoadArrow>, room: impl Fn(Pos2, Vec2) -> f64) -> Vec<LoadArrow> {
+    let factor = arrows.iter().fold(1.0, |factor: f64, arrow| match arrow.shape {
+        ArrowShape::Straight { vector, direction, .. } => {
+            factor.min(room(arrow.from, direction).max(STUB) / f64::from(vector.length()))
+        }
+        ArrowShape::Arc => factor,
+    });
     for arrow in &mut arrows {
-        arrow.vector = arrow.direction * (factor * arrow.vector.length()).max(STUB as f32);
+        if let ArrowShape::Straight { vector, direction, .. } = &mut arrow.shape {
+            *vector = *direction * (factor as f32 * vector.length()).max(STUB as f32);
+        }
     }
     arrows
 }
@@ -195,156 +226,155 @@ pub(crate) fn is_seen(load: &Load, time: f64) -> bool {
     load.pulse().is_none_or(|pulse| pulse.factor(time) >= SEEN)
 }
 
-impl Arrow {
-    pub(crate) fn tip(&self) -> Pos2 {
-        self.from + self.vector
+/// Returns the arrow that a press at `pointer` grabs at its tip.
+pub(crate) fn at_tip(arrows: &[LoadArrow], pointer: Pos2) -> Option<&LoadArrow> {
+    nearest(arrows, NEAR, |arrow| arrow.tip().distance(pointer))
+}
+
+/// Returns the arrow of a force that a press at `pointer` grabs at its shaft.
+pub(crate) fn at_shaft(arrows: &[LoadArrow], pointer: Pos2) -> Option<&LoadArrow> {
+    /// Distance from a shaft within which a press grabs it, points.
+    const NEAR: f32 = 5.0;
+    nearest(arrows, NEAR, |LoadArrow { from, shape, .. }| match *shape {
+        ArrowShape::Straight { vector, .. } => {
+            let along = ((pointer - *from).dot(vector) / vector.length_sq()).clamp(0.0, 1.0);
+            pointer.distance(*from + along * vector)
+        }
+        ArrowShape::Arc => f32::INFINITY,
+    })
+}
+
+/// Returns the item at the smallest distance from the pointer, if it is at most `near`, points.
+pub(crate) fn nearest<T>(items: &[T], near: f32, distance: impl Fn(&T) -> f32) -> Option<&T> {
+    let near = items.iter().map(|item| (distance(item), item)).filter(|(d, _)| *d <= near);
+    near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, item)| item)
+}
+
+/// Arrow of a force or a moment, in window coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LoadArrow {
+    /// Index among the scene's loads.
+    pub load: usize,
+    /// Point of application of a force, or centre of the arrow of a moment.
+    pub from: Pos2,
+    /// Magnitude of a force, N, or moment, N m, counter-clockwise.
+    pub(super) value: f64,
+    /// Scale of the length, points, or of the angle, rad.
+    pub(super) scale: LoadScale,
+    pub(super) shape: ArrowShape,
+}
+
+/// Shape of the arrow of a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ArrowShape {
+    /// Arrow of a force.
+    Straight {
+        /// Vector from the point of application to the tip, which stays in the view.
+        vector: Vec2,
+        /// Direction of the force.
+        direction: Vec2,
+        /// Largest force that it can be dragged to, N.
+        largest: f64,
+    },
+    /// Circular arrow of a moment.
+    Arc,
+}
+
+/// Movement of a tip since it was grabbed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Drag {
+    /// Displacement, points.
+    pub by: Vec2,
+    /// Rotation about the centre of the arrow of a moment, rad, counter-clockwise.
+    pub angle: f64,
+}
+
+impl LoadArrow {
+    /// Returns the circular arrow of a moment, N m, in a scene that opens with moments up to `usual`, N m.
+    pub(crate) fn of_moment(load: usize, from: Pos2, value: f64, usual: f64) -> Self {
+        let [stub, opening, decade] = ANGLES;
+        let scale = LoadScale { usual, stub, opening, straight: STRAIGHT, decade };
+        Self { load, from, value, scale, shape: ArrowShape::Arc }
     }
 
-    /// Returns the force, N, and its direction, degrees, after the tip has moved by `by`, points. The numbers are
-    /// rounded to the pointer's accuracy.
-    pub(crate) fn dragged(&self, by: Vec2, snap: bool) -> (f64, f64) {
-        let whole = self.scale.length(self.magnitude) as f32;
+    pub(crate) fn tip(&self) -> Pos2 {
+        match self.shape {
+            ArrowShape::Straight { vector, .. } => self.from + vector,
+            ArrowShape::Arc => self.at(self.sweep()).0,
+        }
+    }
+
+    /// Returns the vector from the point of application of a force to the tip; zero for a moment.
+    pub(crate) fn vector(&self) -> Vec2 {
+        if let ArrowShape::Straight { vector, .. } = self.shape { vector } else { Vec2::ZERO }
+    }
+
+    /// Returns the angle of the arrow of a moment, rad, counter-clockwise.
+    pub(super) fn sweep(&self) -> f64 {
+        let size = self.scale.length(self.value.abs());
+        if self.value < 0.0 { -size } else { size }
+    }
+
+    /// Returns the point of the arrow of a moment at the angle `sweep`, rad, from its start, and the counter-clockwise
+    /// tangent there.
+    pub(super) fn at(&self, sweep: f64) -> (Pos2, Vec2) {
+        let radius = (RADIUS + PITCH * sweep.abs() / TAU) as f32;
+        let (s, c) = (START + sweep).sin_cos();
+        // The window's y axis points down.
+        let outward = vec2(c as f32, -s as f32);
+        (self.from + outward * radius, vec2(outward.y, -outward.x))
+    }
+
+    /// Returns the angle by which a pointer that moves between two points rotates about the centre, rad,
+    /// counter-clockwise.
+    pub(crate) fn angle_between(&self, from: Pos2, to: Pos2) -> f64 {
+        let [from, to] = [from, to].map(|p| p - self.from);
+        if from.length() < MIDDLE || to.length() < MIDDLE {
+            return 0.0;
+        }
+        f64::from(to.x * from.y - to.y * from.x).atan2(f64::from(from.dot(to)))
+    }
+
+    /// Returns the value of the load after a drag of the tip, and the direction of a force, degrees. The numbers are rounded
+    /// to the pointer's accuracy; with `snap` a direction to a multiple of 15°, and a moment to 1, 2 or 5 times a power of ten.
+    pub(crate) fn dragged(&self, Drag { by, angle }: Drag, snap: bool) -> (f64, Option<f64>) {
+        let ArrowShape::Straight { vector: drawn, direction, largest } = self.shape else {
+            let sweep = self.sweep() + angle;
+            let moment = sweep.signum() * self.scale.load(sweep.abs());
+            let size = moment.abs();
+            if !snap || size == 0.0 {
+                return (three_digits(moment), None);
+            }
+            // The reciprocals of the series 1, 2, 5 are the same series.
+            let (below, above) = (round_down(size), 1.0 / round_down(1.0 / size));
+            let nearest = if size * size < below * above { below } else { above };
+            return (three_digits(nearest.copysign(moment)), None);
+        };
+        let whole = self.scale.length(self.value) as f32;
         let vector = if self.is_broken() {
             // The force has the direction of what is drawn. A longer arrow keeps the part of its length that is not drawn.
-            let (to, drawn) = (self.vector + by, self.vector.length());
+            let (to, drawn) = (drawn + by, drawn.length());
             to * if to.length() < drawn { whole / drawn } else { 1.0 + (whole - drawn) / to.length() }
         } else {
-            self.direction * whole + by
+            direction * whole + by
         };
         let vector = if vector.length() < NO_LENGTH { Vec2::ZERO } else { vector };
-        let pointed = if vector == Vec2::ZERO { self.direction } else { vector };
+        let pointed = if vector == Vec2::ZERO { direction } else { vector };
         let degrees = f64::from(-pointed.y).atan2(f64::from(pointed.x)).to_degrees();
         let step = if snap { SNAP } else { 1.0 };
         // Normalizes −0 to 0 and, below, −180 to 180.
         let degrees = (degrees / step).round() * step + 0.0;
         // Dragging ends at the slider's largest force; a larger force that was typed can only be reduced.
-        let most = self.magnitude.max(self.largest);
+        let most = self.value.max(largest);
         let magnitude = three_digits(self.scale.load(f64::from(vector.length()))).min(most);
-        (magnitude, if degrees == -180.0 { 180.0 } else { degrees })
+        (magnitude, Some(if degrees == -180.0 { 180.0 } else { degrees }))
     }
 
-    /// Paints the arrow of the force on a body that is not in the state that was asked for, without a handle; nothing for a
-    /// force of zero.
-    pub(crate) fn paint_body_load(&self, painter: &Painter, color: Color32, visuals: &Visuals) {
-        if self.magnitude > 0.0 {
-            paint_arrow(painter, self.from, self.vector, color);
-            self.paint_break(painter, color, visuals);
-        }
+    /// Returns `true` if the arrow of a force is shorter than its force, because its tip stays in the view.
+    pub(super) fn is_broken(&self) -> bool {
+        let ArrowShape::Straight { vector, .. } = self.shape else { return false };
+        f64::from(vector.length()) < self.scale.length(self.value) - 1.0
     }
-
-    /// Returns `true` if the arrow is shorter than its force, because its tip stays in the view.
-    fn is_broken(&self) -> bool {
-        f64::from(self.vector.length()) < self.scale.length(self.magnitude) - 1.0
-    }
-
-    /// Paints the gap of a shaft that is shorter than its force.
-    fn paint_break(&self, painter: &Painter, color: Color32, visuals: &Visuals) {
-        /// Fraction of the vector at which the shaft is broken.
-        const AT: f32 = 0.3;
-        if !self.is_broken() {
-            return;
-        }
-        let direction = self.vector.normalized();
-        let (middle, slanted) = (self.from + AT * self.vector, (direction.rot90() + 0.6 * direction) * 7.0);
-        let ends = |at: Pos2| [at - slanted, at + slanted];
-        let sides = [middle - direction * 2.5, middle + direction * 2.5];
-        painter.line_segment(ends(middle), Stroke::new(5.0, visuals.extreme_bg_color));
-        for side in sides {
-            painter.line_segment(ends(side), Stroke::new(1.5, color));
-        }
-    }
-
-    /// Paints the arrow with its force next to it, as an outline if the body does not have this load.
-    pub(crate) fn paint(&self, labels: &mut Labels<'_>, color: Color32, (is_hot, is_outline): (bool, bool)) {
-        /// Size of the areas along the arrow that stay free of labels, and distance between them, points.
-        const GRIP: Vec2 = Vec2::splat(8.0);
-        const STEP: f32 = 12.0;
-        let (painter, direction) = (labels.painter, self.vector.normalized());
-        let is_stub = self.magnitude == 0.0;
-        let faint = if is_stub && !is_hot { color.gamma_multiply(0.55) } else { color };
-        let tip = if is_outline {
-            paint_outline(painter, self.from, self.vector, faint)
-        } else {
-            paint_arrow(painter, self.from, self.vector, faint)
-        };
-        self.paint_break(painter, faint, labels.visuals);
-        let grip = tip - direction * 6.0;
-        paint_grip(painter, grip, faint, is_hot);
-        let view = painter.clip_rect();
-        if view.contains(self.from) || view.contains(tip) {
-            let along = (0..).map(|i| STEP * i as f32).take_while(|length| *length < self.vector.length());
-            let places = along.map(|length| self.from + direction * length).chain([grip]);
-            labels.taken.extend(places.map(|at| Rect::from_center_size(at, GRIP)));
-            let (anchor, at) = label_place(tip, direction);
-            labels.add(at, anchor, &engineering(self.magnitude, "N"), faint, 200.0);
-        }
-    }
-
-    /// Paints the dragged arrow at the position where its tip was grabbed.
-    pub(crate) fn paint_handle(&self, painter: &Painter, by: Vec2, color: Color32) {
-        let stroke = Stroke::new(1.5, color.gamma_multiply(0.8));
-        let tip = self.tip() + by;
-        painter.add(Shape::Vec(Shape::dashed_line(&[self.from, tip], stroke, 5.0, 4.0)));
-        painter.circle_stroke(self.from, 3.0, stroke);
-        painter.circle(tip, 7.0, color.gamma_multiply(0.35), Stroke::new(2.0, color));
-    }
-}
-
-/// Returns the position of an arrow's label: beyond its tip, or above the tip of a nearly horizontal arrow, so that it
-/// does not cover the arrow.
-fn label_place(tip: Pos2, direction: Vec2) -> (Align2, Pos2) {
-    /// Sine of 22.5 degrees: directions closer to an axis count as horizontal or vertical.
-    const SLIGHT: f32 = 0.383;
-    if direction.y.abs() < SLIGHT {
-        return (Align2::CENTER_BOTTOM, tip - direction * 20.0 - vec2(0.0, 15.0));
-    }
-    let across = match direction.x {
-        x if x.abs() < SLIGHT => Align::Center,
-        x if x > 0.0 => Align::Min,
-        _ => Align::Max,
-    };
-    let down = if direction.y > 0.0 { Align::Min } else { Align::Max };
-    (Align2([across, down]), tip + vec2(6.0 * direction.x, 11.0 * direction.y.signum()))
-}
-
-/// Paints the ring that shows where an arrow can be grabbed; filled while the pointer is over it.
-pub(crate) fn paint_grip(painter: &Painter, at: Pos2, color: Color32, is_hot: bool) {
-    if is_hot {
-        painter.circle(at, NEAR, color.gamma_multiply(0.25), Stroke::new(2.0, color));
-    } else {
-        painter.circle_stroke(at, 8.5, Stroke::new(1.0, color.gamma_multiply(0.6)));
-    }
-}
-
-/// Length of the head of an arrow, and its half width, points.
-const HEAD: [f32; 2] = [12.0, 5.04];
-
-/// Paints an arrow with the vector `vector` at `from`, and returns its tip.
-pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    let (tip, neck, side) = head(from, vector);
-    painter.line_segment([from, neck], Stroke::new(3.0, color));
-    painter.add(Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
-    tip
-}
-
-/// Paints the outline of an arrow with the vector `vector` at `from`, and returns its tip.
-fn paint_outline(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    /// Half width of the shaft as a fraction of that of the head.
-    const SHAFT: f32 = 0.45;
-    let (tip, neck, side) = head(from, vector);
-    let shaft = SHAFT * side;
-    let line = [from + shaft, neck + shaft, neck + side, tip, neck - side, neck - shaft, from - shaft];
-    painter.add(Shape::closed_line(line.to_vec(), Stroke::new(1.5, color)));
-    tip
-}
-
-/// Returns the tip of an arrow, the middle of the head's base, and the vector from there to a corner.
-fn head(from: Pos2, vector: Vec2) -> (Pos2, Pos2, Vec2) {
-    let direction = vector.normalized();
-    let [length, width] = HEAD;
-    let tip = from + vector;
-    let neck = tip - direction * length;
-    (tip, neck, vec2(-direction.y, direction.x) * width)
 }
 
 #[cfg(test)]
@@ -352,6 +382,20 @@ mod tests {
     use super::*;
 
     const LARGE: Vec2 = vec2(1000.0, 700.0);
+
+    fn force(value: f64, vector: Vec2) -> LoadArrow {
+        let shape = ArrowShape::Straight { vector, direction: vec2(0.0, 1.0), largest: 1e6 };
+        LoadArrow { load: 0, from: Pos2::ZERO, value, scale: scale(1e3, LARGE), shape }
+    }
+
+    fn moment(value: f64) -> LoadArrow {
+        LoadArrow::of_moment(0, pos2(100.0, 100.0), value, 1e4)
+    }
+
+    /// Returns the moment, N m, of an arrow whose end is rotated by this angle, rad.
+    fn turned(arrow: LoadArrow, angle: f64, snap: bool) -> f64 {
+        arrow.dragged(Drag { by: Vec2::ZERO, angle }, snap).0
+    }
 
     #[test]
     fn vectors_go_to_polar_form_and_back() {
@@ -365,9 +409,9 @@ mod tests {
     }
 
     /// In every view, a pixel of the arrow of the opening force is 1 to 2 % of the force; in a low one, where an arrow of that
-    /// length would leave the view, up to 3.4 %.
+    /// length would leave the view, up to 3.4 %. A pixel along the arc of the opening moment is 1 to 2 % of the moment.
     #[test]
-    fn a_pixel_is_one_or_two_percent_of_the_force() {
+    fn a_pixel_is_one_or_two_percent_of_the_load() {
         let low = scale(3e4, vec2(240.0, 120.0));
         assert!(low.opening == 30.0 && low.load(low.opening + 1.0) < 1.034 * 3e4, "{low:?}");
         for side in [200.0, 340.0, 480.0, 700.0, 2000.0] {
@@ -375,65 +419,88 @@ mod tests {
             let rate = (scale.load(scale.opening + 1.0) - scale.load(scale.opening - 1.0)) / (2.0 * 3e4);
             assert!((0.01..=0.0201).contains(&rate), "{side}: {rate}");
         }
+        let arrow = moment(1e4);
+        let pixel = 1.0 / (RADIUS + PITCH * arrow.sweep() / TAU);
+        let rate = arrow.scale.load(arrow.sweep() + pixel) / 1e4 - 1.0;
+        assert!((0.01..=0.02).contains(&rate), "{rate}");
     }
 
     /// An arrow that has little room shortens the others too.
     #[test]
     fn the_arrow_of_a_larger_force_is_the_longer_one() {
-        let (from, direction, scale) = (Pos2::ZERO, vec2(0.0, 1.0), scale(1e3, LARGE));
-        let arrow = |magnitude: f64| {
-            let vector = direction * scale.length(magnitude) as f32;
-            Arrow { load: 0, from, vector, direction, scale, magnitude, largest: 1e6 }
-        };
-        let arrows = shortened(vec![arrow(2e3), arrow(1e3)], |arrow| if arrow.magnitude > 1e3 { 60.0 } else { 200.0 });
-        let [large, small] = [0, 1].map(|i| arrows[i].vector.length());
+        let arrow = |value: f64| force(value, vec2(0.0, scale(1e3, LARGE).length(value) as f32));
+        let [mut large, small] = [arrow(2e3), arrow(1e3)];
+        large.from.x = 9.0;
+        let arrows = shortened(vec![large, small], |from, _| if from.x > 0.0 { 60.0 } else { 200.0 });
+        let [large, small] = [0, 1].map(|i| arrows[i].vector().length());
         assert!((large - 60.0).abs() < 1e-3 && (large / small - 2.0).abs() < 1e-3, "{large} {small}");
         // The force under the tip is that of the whole length.
-        assert_eq!(arrows[0].dragged(Vec2::ZERO, false), (2e3, DOWN));
-    }
-
-    /// The label does not cover the arrow, whatever the direction and length.
-    #[test]
-    fn labels_do_not_cover_arrows() {
-        let size = vec2(48.0, 17.0);
-        for degrees in 0..360u16 {
-            let direction = Vec2::angled(f32::from(degrees).to_radians());
-            for length in [22.0, 60.0, 150.0] {
-                let tip = Pos2::ZERO + direction * length;
-                let (anchor, at) = label_place(tip, direction);
-                let label = anchor.anchor_size(at, size);
-                let covers = (0..=100u8).map(|i| Pos2::ZERO + direction * (length * f32::from(i) / 100.0));
-                let covers = covers.filter(|p| label.expand(2.0).contains(*p)).count();
-                assert_eq!(covers, 0, "{degrees} degrees, {length} points: {label:?}");
-            }
-        }
+        assert_eq!(arrows[0].dragged(Drag::default(), false), (2e3, Some(DOWN)));
     }
 
     #[test]
     fn a_dragged_tip_gives_round_numbers_and_shift_snaps() {
-        let scale = scale(1e3, LARGE);
-        let vector = vec2(0.0, scale.length(1e3) as f32);
-        let (from, direction) = (Pos2::ZERO, vector.normalized());
-        let arrow = Arrow { load: 0, from, vector, direction, scale, magnitude: 1e3, largest: 1e6 };
-        assert_eq!(arrow.dragged(Vec2::ZERO, false), (1e3, DOWN));
+        let vector = vec2(0.0, scale(1e3, LARGE).length(1e3) as f32);
+        let arrow = force(1e3, vector);
+        let dragged = |arrow: LoadArrow, by: Vec2, snap: bool| {
+            let (magnitude, direction) = arrow.dragged(Drag { by, angle: 0.0 }, snap);
+            (magnitude, direction.unwrap())
+        };
+        assert_eq!(dragged(arrow, Vec2::ZERO, false), (1e3, DOWN));
         // Twice the length is twice the force.
-        assert_eq!(arrow.dragged(vector, false), (2e3, DOWN));
-        assert_eq!(arrow.dragged(vec2(0.0, 10.0), false), (1140.0, DOWN));
-        let (_, direction) = arrow.dragged(vec2(20.0, 0.0), true);
-        assert_eq!(direction, -75.0);
-        assert_eq!(arrow.dragged(-arrow.vector, false).0, 0.0);
+        assert_eq!(dragged(arrow, vector, false), (2e3, DOWN));
+        assert_eq!(dragged(arrow, vec2(0.0, 10.0), false), (1140.0, DOWN));
+        assert_eq!(dragged(arrow, vec2(20.0, 0.0), true).1, -75.0);
+        assert_eq!(dragged(arrow, -vector, false).0, 0.0);
         // Dragging ends at the slider's largest force.
-        assert!((arrow.dragged(vec2(0.0, 2e4), false).0 / 1e6 - 1.0).abs() < 1e-9);
+        assert!((dragged(arrow, vec2(0.0, 2e4), false).0 / 1e6 - 1.0).abs() < 1e-9);
         // The force of an arrow that ends at the border of the view is that of its whole length.
-        let large = Arrow { vector: 3.0 * vector, magnitude: 1e5, ..arrow };
-        assert_eq!(large.dragged(Vec2::ZERO, false), (1e5, DOWN));
+        let large = force(1e5, 3.0 * vector);
+        assert_eq!(dragged(large, Vec2::ZERO, false), (1e5, DOWN));
         // Dragged, it has the direction that is drawn.
-        assert_eq!(large.dragged(vec2(3.0 * vector.y, 0.0), false).1, -45.0);
-        let zero = Arrow { vector: 16.0 * arrow.direction, magnitude: 0.0, ..arrow };
-        assert_eq!((zero.dragged(Vec2::ZERO, false).0, zero.dragged(vector, false)), (0.0, (1e3, DOWN)));
-        assert_eq!(zero.dragged(Vec2::ZERO, false).1, DOWN);
+        assert_eq!(dragged(large, vec2(3.0 * vector.y, 0.0), false).1, -45.0);
+        let zero = force(0.0, vec2(0.0, 16.0));
+        assert_eq!((dragged(zero, Vec2::ZERO, false), dragged(zero, vector, false)), ((0.0, DOWN), (1e3, DOWN)));
         // A force exactly to the left has the direction +180, on either side of the axis.
-        let left = arrow.dragged(-arrow.vector + vec2(-60.0, 1e-4), false);
-        assert_eq!(left.1, 180.0);
+        assert_eq!(dragged(arrow, -vector + vec2(-60.0, 1e-4), false).1, 180.0);
+    }
+
+    /// The mapping is its own inverse for both senses of rotation; twice the opening angle is twice the moment.
+    #[test]
+    fn the_angle_of_the_arrow_is_proportional_to_the_moment() {
+        for value in [0.0, 1e-3, -1.0, 12.0, -500.0, 3e4, 1e5, -1e7] {
+            let back = moment(value).scale.load(moment(value).sweep().abs()).copysign(moment(value).sweep());
+            assert!((back - value).abs() <= 1e-9 * (value.abs() + 1e-3), "{value} {back}");
+        }
+        assert!((moment(2e4).sweep() - 2.0 * moment(1e4).sweep()).abs() < 1e-12);
+        assert!((moment(-1e4).sweep() + moment(1e4).sweep()).abs() < 1e-12);
+        assert_eq!(turned(moment(0.0), -moment(0.0).sweep(), false), 0.0);
+    }
+
+    #[test]
+    fn a_dragged_end_of_an_arc_gives_round_numbers_and_shift_snaps() {
+        let arrow = moment(1e4);
+        assert_eq!(turned(arrow, 0.0, false), 1e4);
+        assert_eq!(turned(arrow, arrow.sweep(), false), 2e4);
+        // Dragging back through zero changes the sign.
+        assert_eq!(turned(arrow, -arrow.sweep(), false), 0.0);
+        assert!((turned(arrow, -2.0 * arrow.sweep(), false) / -1e4 - 1.0).abs() < 0.01);
+        for by in [-4.0, -1.0, -0.3, 0.1, 0.4, 0.8] {
+            let moment = turned(arrow, by, true);
+            let digits = format!("{moment:e}");
+            let first = digits.trim_start_matches('-').split('e').next().unwrap();
+            assert!(moment == 0.0 || ["1", "2", "5"].contains(&first), "{by}: {moment}");
+        }
+    }
+
+    /// The window's y axis points down: moving up on the right side is counter-clockwise.
+    #[test]
+    fn a_pointer_rotates_about_the_centre() {
+        let (right, above) = (pos2(130.0, 100.0), pos2(100.0, 70.0));
+        assert!((moment(1.0).angle_between(right, above) - TAU / 4.0).abs() < 1e-6);
+        assert!((moment(1.0).angle_between(above, right) + TAU / 4.0).abs() < 1e-6);
+        assert_eq!(moment(1.0).angle_between(pos2(101.0, 100.0), above), 0.0);
+        let by = moment(1e4).angle_between(moment(1e4).tip(), moment(5e4).tip());
+        assert_eq!(turned(moment(1e4), by, false), 5e4);
     }
 }

@@ -2,10 +2,10 @@
 //! moves them along the body.
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::point_of_application;
+use crate::app::viewport::arrow::{nearest, point_of_application};
 use crate::app::viewport::objects::{Object, ObjectChange, rounded, snapped};
+use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::app::viewport::{handle, probe};
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
@@ -27,17 +27,21 @@ pub(crate) struct Base {
     pub at: Pos2,
 }
 
-/// Base that is under the pointer, or dragged by it.
+/// Base that is pressed, or under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct HotBase {
+pub(crate) struct PressedBase {
     pub base: Base,
-    /// Position of the pointer, if it drags the base.
+    /// Position of the press.
+    pub pressed: Pos2,
+    /// Material point under the press.
+    pub point: Option<MaterialPoint>,
+    /// Position of the pointer once it has left the position of the press.
     pub dragged: Option<Pos2>,
 }
 
 /// Returns the base that a press at `pointer` grabs.
 pub(crate) fn near(bases: &[Base], pointer: Pos2) -> Option<&Base> {
-    handle::nearest(bases, NEAR, |base| base.at.distance(pointer))
+    nearest(bases, NEAR, |base| base.at.distance(pointer))
 }
 
 /// Drawn body with the objects of its scene.
@@ -162,7 +166,7 @@ impl Bases<'_> {
 
     /// Paints a ring at the base under the pointer, and at the place to which it is dragged, with the name of that
     /// place.
-    pub(crate) fn paint(&self, painter: &Painter, hot: HotBase, visuals: &egui::Visuals, color: Color32) {
+    pub(crate) fn paint(&self, painter: &Painter, hot: PressedBase, visuals: &egui::Visuals, color: Color32) {
         painter.circle_stroke(hot.base.at, NEAR, Stroke::new(1.5, color));
         let Some(pointer) = hot.dragged else { return };
         let Some((place, at)) = self.target(hot.base.object, pointer) else {

@@ -1,7 +1,7 @@
 //! View of a body in a part of the window: its drawn mesh, and the pointer over it. Several views can share a camera.
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::arrow::LoadedBody;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Pointer;
@@ -42,9 +42,9 @@ impl BodyView {
         scene: &'a Scene,
         time: f64,
         (session, direction): (&Session, f64),
-    ) -> Option<ForceArrows<'a>> {
+    ) -> Option<LoadedBody<'a>> {
         let (system, positions) = (self.body.system.as_ref()?, &self.body.nodes);
-        Some(ForceArrows { scene, system, positions, time, direction, opening: session.document().opened })
+        Some(LoadedBody { scene, system, positions, time, direction, opening: session.document().opened })
     }
 
     /// Returns the displayed field and its value at a material point of a body's mesh.

@@ -3,12 +3,11 @@
 use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::session::has_mesh_of;
-use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::arrow::{LoadArrow, LoadedBody};
 use crate::app::viewport::bars;
 use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
-use crate::app::viewport::handle::Handle;
 use crate::app::viewport::objects;
 use crate::app::viewport::overlay::{self, Legends, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
@@ -150,7 +149,7 @@ impl MainView {
     /// Processes the pointer.
     pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let handles = self.arrows(content);
+        let arrows = self.arrows(content);
         let bases = self.bases(content).map_or_else(Vec::new, |bases| bases.all());
         self.view.rect = rect;
         // A magnified body is not where the pointer would pull it.
@@ -161,8 +160,8 @@ impl MainView {
             false => Interactivity::Grabbable,
         };
         let BodyView { pointer, body, .. } = &mut self.view;
-        let (camera, handles, bases) = (&self.camera, &handles, &bases);
-        let targets = HitTargets { response: &response, camera, body, interactivity, handles, bases };
+        let (camera, arrows, bases) = (&self.camera, &arrows, &bases);
+        let targets = HitTargets { response: &response, camera, body, interactivity, arrows, bases };
         let interaction = pointer.process(ui, &targets);
         (response, interaction)
     }
@@ -215,7 +214,7 @@ impl MainView {
         const NEAR: f32 = 9.0;
         self.camera.follow(interaction.camera);
         // On a card of Learn a click selects a triangle.
-        let clicked = interaction.clicked.flatten().filter(|_| content.card.is_none());
+        let clicked = interaction.clicked.filter(|_| content.card.is_none());
         if let (Some(point), Some(click)) = (clicked, response.interact_pointer_pos()) {
             let kept = self.probe.and_then(|kept| self.in_view(content, kept));
             let is_unpinned = kept.is_some_and(|kept| kept.distance(click) <= NEAR);
@@ -261,8 +260,7 @@ impl MainView {
             self.menu = None;
         } else if response.secondary_clicked() {
             // The tip of a short arrow covers the point where its force acts.
-            let handle = self.view.pointer.hot_handle().map(|hot| hot.handle.load());
-            let of_handle = handle.and_then(|load| match scene.loads.get(load)? {
+            let of_arrow = self.view.pointer.hot_arrow().and_then(|grip| match scene.loads.get(grip.arrow.load)? {
                 Load::Force { place: Place::At(at), .. } => mesh.locate((*at).into()),
                 _ => None,
             });
@@ -271,7 +269,7 @@ impl MainView {
                 let at = self.projection().place(response.interact_pointer_pos()?);
                 mesh.pick(&self.view.body.nodes, outline, at, NEAR / self.camera.shown.scale)
             };
-            let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_handle).or_else(beside);
+            let clicked = self.view.pointer.over_body().map(|(point, _)| point).or(of_arrow).or_else(beside);
             let at = clicked.and_then(|point| probe::place(mesh, mesh.nodes(), point));
             self.menu = at.map(|at| objects::snapped(system, outline, at, CLOSE / self.camera.shown.scale));
         }
@@ -279,16 +277,16 @@ impl MainView {
     }
 
     /// Returns the loads of the last frame's arrows.
-    fn forces<'a>(&'a self, content: &Content<'a>) -> Option<ForceArrows<'a>> {
+    fn forces<'a>(&'a self, content: &Content<'a>) -> Option<LoadedBody<'a>> {
         let simulation = content.simulation();
         let time = simulation.state().time();
         self.view.forces(simulation.scene(), time, (content.session, content.direction))
     }
 
-    /// Returns the load handles, as of the last frame.
-    pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<Handle> {
+    /// Returns the arrows of the loads, as of the last frame.
+    pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<LoadArrow> {
         let forces = self.forces(content).filter(|_| !content.is_apart());
-        forces.map_or_else(Vec::new, |forces| forces.handles(&self.projection()))
+        forces.map_or_else(Vec::new, |forces| forces.arrows(&self.projection()))
     }
 
     /// Returns the window position of a material point.
@@ -401,10 +399,11 @@ impl MainView {
         let mut arrows = own.whole_arrows(&projection);
         if let Some(reach) = content.reach() {
             let positions: Vec<_> = self.drawn_positions(reach).collect();
-            let forces = ForceArrows { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
+            let forces = LoadedBody { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
             arrows.extend(forces.whole_arrows(&projection));
         }
-        arrows.iter().fold(least, |margins, arrow| {
+        let forces = arrows.iter().filter(|arrow| arrow.vector() != Vec2::ZERO);
+        forces.fold(least, |margins, arrow| {
             let tip = arrow.tip();
             // A tip must not cover the colour bar.
             let is_right = tip.x > size.x - bars::LEGEND_WIDTH;
@@ -442,7 +441,7 @@ impl MainView {
         let overlay = Overlay {
             view: &self.view,
             projection: self.projection(),
-            body: ForceArrows { scene: shown.scene(), ..forces },
+            body: LoadedBody { scene: shown.scene(), ..forces },
             wanted: fallback.map(|_| simulation.scene()),
             options: content.options,
             apart: content.is_apart(),

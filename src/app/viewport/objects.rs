@@ -4,8 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::force_range;
-use crate::app::viewport::moment_arrow::moment_range;
+use crate::app::viewport::arrow::LoadRanges;
 use crate::mesh::{axis_angle, bent, straightened};
 use crate::scene::Probe;
 use crate::section;
@@ -109,7 +108,7 @@ fn width_by_hand(system: &System, place: &Place) -> f64 {
 
 /// Returns a downward force of the usual magnitude of the scene's loads that is put at a place by hand.
 pub(crate) fn force_by_hand(scene: &Scene, system: &System, place: Place) -> Load {
-    let [usual, _] = force_range(OpeningLoads::of(scene), &scene.material, system);
+    let [usual, _] = LoadRanges::new(OpeningLoads::of(scene), &scene.material, system).force;
     let width = width_by_hand(system, &place);
     Load::Force { at_point: width > 0.0, width, place, force: [0.0, -usual], pulse: None }
 }
@@ -251,7 +250,7 @@ fn additions(scene: &Scene, system: &System, (at, near): (Vector2<f64>, f64), ed
         entries.remove(1);
     }
     if let Some(edge) = edge {
-        let [usual, _] = moment_range(OpeningLoads::of(scene), &scene.material, system);
+        let [usual, _] = LoadRanges::new(OpeningLoads::of(scene), &scene.material, system).moment;
         let text = fill!("Add a moment on %{edge}", edge = tr(edge));
         entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual)))));
     }

@@ -3,10 +3,10 @@
 use crate::app::diagnosis::{Errors, error_text, load_text};
 use crate::app::interface::*;
 use crate::app::session::history::MotionSample;
-use crate::app::viewport::arrow::{self, ForceArrows};
+use crate::app::viewport::arrow::{LoadArrow, LoadedBody, is_seen};
+use crate::app::viewport::arrow_painter::paint_arrow;
 use crate::app::viewport::bars::{KEY_WIDTH, LEGEND_HEIGHT, color_bar, has_legend, is_tiny, magnified, scale_bar};
 use crate::app::viewport::body_view::BodyView;
-use crate::app::viewport::moment_arrow::MomentArrow;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::assembly::MouseSpring;
@@ -18,7 +18,7 @@ pub(crate) struct Overlay<'a> {
     pub view: &'a BodyView,
     pub projection: Projection,
     /// Drawn body with the loads of its scene.
-    pub body: ForceArrows<'a>,
+    pub body: LoadedBody<'a>,
     /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
     pub options: &'a ViewOptions,
@@ -173,7 +173,7 @@ fn on_body(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
         // A force on an edge is distributed along it; its arrow is that of the whole.
         for load in &overlay.body.scene.loads {
             if let Load::Force { place: Place::Edge(edge), .. } = load
-                && arrow::is_seen(load, overlay.body.time)
+                && is_seen(load, overlay.body.time)
             {
                 for segment in edge_segments(overlay, edge) {
                     painter.line_segment(segment, Stroke::new(2.5, palette.load));
@@ -231,11 +231,11 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
         let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.body.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {
             if force.abs() > least {
-                arrow::paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
+                paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
             }
         }
         if moment.abs() > least * overlay.body.system.size() {
-            MomentArrow::new(0, middle, moment, moment.abs()).paint_arrow(painter, color, 3.0);
+            LoadArrow::of_moment(0, middle, moment, moment.abs()).paint_shape(labels, color, false);
         }
         // The label is at the upper end, outside the body.
         let (end, below) = if from.y <= to.y { (from, to) } else { (to, from) };
@@ -412,28 +412,21 @@ fn supports(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
 }
 
 fn loads(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
-    let (painter, visuals) = (labels.painter, labels.visuals);
-    let projection = &overlay.projection;
-    let of = |scene| ForceArrows { scene, ..overlay.body };
     // The filled arrow belongs to the body, and the outline is the load that was asked for.
-    let forces = of(overlay.wanted.unwrap_or(overlay.body.scene));
+    let wanted = LoadedBody { scene: overlay.wanted.unwrap_or(overlay.body.scene), ..overlay.body };
     let is_outline = overlay.wanted.is_some();
     if is_outline {
-        let (arrows, moments) = (overlay.body.arrows(projection), overlay.body.moment_arrows(projection));
-        arrows.iter().for_each(|own| own.paint_body_load(painter, palette.load, visuals));
-        moments.into_iter().for_each(|own| _ = own.paint_arrow(painter, palette.load, 3.0));
+        for own in overlay.body.arrows(&overlay.projection).iter().filter(|own| own.value != 0.0) {
+            own.paint_shape(labels, palette.load, false);
+        }
     }
-    let hot = overlay.view.pointer.hot_handle();
-    let is_hot = |load: usize| hot.is_some_and(|hot| hot.handle.load() == load && hot.dragged.is_none());
-    let arrows = forces.arrows(projection);
-    for arrow in &arrows {
-        arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline));
+    let hot = overlay.view.pointer.hot_arrow();
+    for arrow in wanted.arrows(&overlay.projection) {
+        let is_hot = hot.is_some_and(|grip| grip.arrow.load == arrow.load && grip.drag().is_none());
+        arrow.paint(labels, palette.load, (is_hot, is_outline));
     }
-    for arrow in forces.moment_arrows(projection) {
-        arrow.paint(labels, palette.load, (is_hot(arrow.load), is_outline), &arrows);
-    }
-    if let Some((taken, drag)) = hot.and_then(|hot| Some((hot.handle, hot.dragged?))) {
-        taken.paint(painter, drag, palette.load);
+    if let Some((grip, drag)) = hot.and_then(|grip| Some((grip, grip.drag()?))) {
+        grip.arrow.paint_dragged(labels.painter, drag, palette.load);
     }
 }
 
@@ -445,7 +438,7 @@ fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     /// Height above the arrow, and of the label and the time line under it, points.
     const TOP: f32 = 30.0;
     const UNDER: f32 = 56.0;
-    for load in overlay.body.scene.loads.iter().filter(|load| arrow::is_seen(load, overlay.body.time)) {
+    for load in overlay.body.scene.loads.iter().filter(|load| is_seen(load, overlay.body.time)) {
         let Load::Gravity { acceleration: [x, y], .. } = load else { continue };
         let direction = vec2(*x as f32, -*y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
@@ -454,7 +447,7 @@ fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
         // An arrow that points up begins where one that points down ends.
         let vector = direction * WEIGHT.min(overlay.view.rect.height() - TOP - UNDER).max(SHORTEST);
         let from = overlay.view.rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
-        let tip = arrow::paint_arrow(labels.painter, from, vector, palette.load);
+        let tip = paint_arrow(labels.painter, from, vector, palette.load);
         let label = engineering(x.hypot(*y), "m/s²");
         labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load, 200.0);
     }
@@ -474,7 +467,7 @@ fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Pale
         // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
         let from = if pushes { middle - direction * REACTION } else { middle };
-        let tip = arrow::paint_arrow(labels.painter, from, direction * REACTION, palette.support);
+        let tip = paint_arrow(labels.painter, from, direction * REACTION, palette.support);
         let tail = if pushes { from } else { tip };
         let (anchor, away) = match (pushes, direction.y > 0.0) {
             (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),

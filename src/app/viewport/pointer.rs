@@ -5,20 +5,20 @@ use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
 use nalgebra::Vector2;
 
 use crate::app::session::Grab;
-use crate::app::viewport::base::{self, Base, HotBase};
+use crate::app::viewport::arrow::{self, Drag, LoadArrow};
+use crate::app::viewport::base::{self, Base, PressedBase};
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
-use crate::app::viewport::handle::{self, Grip, Handle, HotHandle, Pull};
 use crate::app::viewport::objects::Object;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
 use crate::assembly::System;
 use crate::mesh::{MaterialPoint, Mesh};
 
-/// Target of the current press.
+/// Target of a press, or of a pointer that is not pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Held {
-    /// No press, or one outside the view.
+    /// None, or one outside the view.
     #[default]
     Nothing,
     /// The tip of an arrow.
@@ -43,28 +43,43 @@ struct PressedPoint {
     grabs: bool,
 }
 
-/// Base of an object that is pressed.
+/// Grabbed arrow, and the pointer's movement since then.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct PressedBase {
-    base: Base,
-    /// Position of the press.
+pub(crate) struct Grip {
+    pub arrow: LoadArrow,
     pressed: Pos2,
-    /// Material point under the press.
-    point: Option<MaterialPoint>,
-    /// Position of the pointer once it has left the position of the press.
-    dragged: Option<Pos2>,
+    last: Pos2,
+    /// `true` once the pointer has left the place of the press; a return to it restores the load.
+    has_moved: bool,
+    /// Movement of the tip: smaller than the pointer's in slow mode.
+    drag: Drag,
+}
+
+impl Grip {
+    /// Moves the tip with the pointer, which is now at `at`; by a tenth of the distance if `slow`.
+    fn drag_to(&mut self, at: Pos2, slow: bool) {
+        const SLOW: f32 = 0.1;
+        /// Movements of less than this, points, do not count as a drag.
+        const STILL: f32 = 2.0;
+        let part = if slow { SLOW } else { 1.0 };
+        self.drag.by += part * (at - self.last);
+        self.drag.angle += f64::from(part) * self.arrow.angle_between(self.last, at);
+        self.last = at;
+        self.has_moved |= at.distance(self.pressed) >= STILL;
+    }
+
+    /// Returns the movement of the tip; `None` if it has not moved.
+    pub(crate) fn drag(&self) -> Option<Drag> {
+        self.has_moved.then_some(self.drag)
+    }
 }
 
 /// State of the pointer: its hover target and the target of its press.
 #[derive(Debug, Default)]
 pub(crate) struct Pointer {
     held: Held,
-    /// Load handle under a pointer that is not pressed.
-    over_tip: Option<Handle>,
-    /// Base of an object under a pointer that is not pressed.
-    over_base: Option<Base>,
-    /// Material point under a pointer that is not pressed.
-    over_body: Option<MaterialPoint>,
+    /// Target under a pointer that is not pressed.
+    over: Held,
     /// Position of the pointer.
     at: Option<Pos2>,
     /// `true` if the wheel was last turned over the view. Scrolling that began elsewhere does not zoom it.
@@ -76,14 +91,14 @@ pub(crate) struct Pointer {
 pub(crate) struct Interaction {
     pub camera: CameraMove,
     pub grab: Grab,
-    /// Index of a load, and its new value.
-    pub load: Option<(usize, Pull)>,
+    /// Index of a load, its new value, and the new direction of a force, degrees.
+    pub load: Option<(usize, (f64, Option<f64>))>,
     /// Index of a load that is reset to the value in the scene's document.
     pub restore: Option<usize>,
     /// Object whose base was dropped, or cut that is dragged, and the position there.
     pub dropped: Option<(Object, Pos2)>,
-    /// Click in the view: on a point of the body, or `Some(None)` outside the body.
-    pub clicked: Option<Option<MaterialPoint>>,
+    /// Point of the body that was clicked.
+    pub clicked: Option<MaterialPoint>,
 }
 
 /// Distance within which the pointer counts as on a thin body, points.
@@ -111,10 +126,21 @@ pub(crate) struct HitTargets<'a> {
     pub camera: &'a CameraController,
     pub body: &'a BodyMesh,
     pub interactivity: Interactivity,
-    /// Handles of the load arrows.
-    pub handles: &'a [Handle],
+    /// Arrows of the loads.
+    pub arrows: &'a [LoadArrow],
     /// Bases of the objects that can be moved.
     pub bases: &'a [Base],
+}
+
+impl Held {
+    /// Returns the material point of the body at the target.
+    fn point(self) -> Option<MaterialPoint> {
+        match self {
+            Self::Body(PressedPoint { point, .. }) | Self::Point(point) => Some(point),
+            Self::Base(base) => base.point,
+            Self::Tip(_) | Self::Space | Self::Nothing => None,
+        }
+    }
 }
 
 impl HitTargets<'_> {
@@ -133,12 +159,6 @@ impl HitTargets<'_> {
         Some(place - probe::place(self.mesh()?, &self.body.nodes, point)?)
     }
 
-    /// Returns the handle that a press grabs; a base comes before the shaft that begins at it.
-    fn handle(&self, at: Pos2) -> Option<Handle> {
-        let of_shaft = || base::near(self.bases, at).is_none().then(|| handle::of_shaft(self.handles, at)).flatten();
-        handle::at(self.handles, at).or_else(of_shaft).copied()
-    }
-
     fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
         let outline = &self.body.geometry.boundary;
         self.mesh()?.pick(&self.body.nodes, outline, place, NEAR / self.camera.shown.scale)
@@ -146,28 +166,27 @@ impl HitTargets<'_> {
 }
 
 impl Pointer {
-    /// Returns the load handle that is under the pointer or grabbed.
-    pub(crate) fn hot_handle(&self) -> Option<HotHandle> {
-        if let Held::Tip(grip) = self.held {
-            return Some(HotHandle { handle: grip.handle, dragged: grip.drag() });
-        }
-        self.over_tip.map(|handle| HotHandle { handle, dragged: None })
+    /// Returns the target of the press, or the one under the pointer.
+    fn hot(&self) -> Held {
+        if self.held == Held::Nothing { self.over } else { self.held }
+    }
+
+    /// Returns the arrow that is under the pointer or grabbed.
+    pub(crate) fn hot_arrow(&self) -> Option<Grip> {
+        if let Held::Tip(grip) = self.hot() { Some(grip) } else { None }
     }
 
     /// Returns the base that is under the pointer or dragged.
-    pub(crate) fn hot_base(&self) -> Option<HotBase> {
-        if let Held::Base(held) = self.held {
-            return Some(HotBase { base: held.base, dragged: held.dragged });
-        }
-        self.over_base.map(|base| HotBase { base, dragged: None })
+    pub(crate) fn hot_base(&self) -> Option<PressedBase> {
+        if let Held::Base(base) = self.hot() { Some(base) } else { None }
     }
 
     /// Returns the material point under the pointer and the pointer's position, while nothing is pressed.
     pub(crate) fn over_body(&self) -> Option<(MaterialPoint, Pos2)> {
-        self.over_body.zip(self.at)
+        self.over.point().zip(self.at)
     }
 
-    /// Returns `true` if a load handle, a base or the body is held.
+    /// Returns `true` if an arrow, a base or the body is held.
     pub(crate) fn holds(&self) -> bool {
         matches!(self.held, Held::Tip(..) | Held::Base(_) | Held::Body(_))
     }
@@ -213,17 +232,12 @@ impl Pointer {
         }
         if response.double_clicked() {
             match self.held {
-                Held::Tip(grip) => interaction.restore = Some(grip.handle.load()),
+                Held::Tip(grip) => interaction.restore = Some(grip.arrow.load),
                 Held::Body(_) | Held::Point(_) | Held::Space => interaction.camera = CameraMove::Fit,
                 Held::Base(_) | Held::Nothing => {}
             }
         } else if response.clicked() {
-            match self.held {
-                Held::Body(PressedPoint { point, .. }) | Held::Point(point) => interaction.clicked = Some(Some(point)),
-                Held::Base(held) => interaction.clicked = held.point.map(Some),
-                Held::Space => interaction.clicked = Some(None),
-                Held::Tip(..) | Held::Nothing => {}
-            }
+            interaction.clicked = self.held.point();
         }
         if !down || fingers.is_some() {
             interaction.grab.release = self.grabs();
@@ -242,17 +256,21 @@ impl Pointer {
         interaction
     }
 
-    /// Returns the target of a press; load handles and bases come before the body, which they may cover.
+    /// Returns the target at a position; arrows and bases come before the body, which they may cover, and a base before the
+    /// shaft that begins at it.
     fn take(targets: &HitTargets<'_>, at: Pos2) -> Held {
-        if let Some(handle) = targets.handle(at) {
-            return Held::Tip(Grip::new(handle, at));
+        let base = base::near(targets.bases, at);
+        let of_shaft = || base.is_none().then(|| arrow::at_shaft(targets.arrows, at)).flatten();
+        if let Some(arrow) = arrow::at_tip(targets.arrows, at).or_else(of_shaft) {
+            let drag = Drag::default();
+            return Held::Tip(Grip { arrow: *arrow, pressed: at, last: at, has_moved: false, drag });
         }
         let place = targets.place(at);
-        if let Some(base) = base::near(targets.bases, at) {
-            return Held::Base(PressedBase { base: *base, pressed: at, point: targets.point(place), dragged: None });
+        let point = targets.point(place);
+        if let Some(base) = base {
+            return Held::Base(PressedBase { base: *base, pressed: at, point, dragged: None });
         }
-        let reached = targets.point(place).filter(|_| targets.interactivity != Interactivity::None);
-        let Some(point) = reached else { return Held::Space };
+        let Some(point) = point else { return Held::Space };
         match targets.offset(point, place) {
             Some(offset) if targets.interactivity == Interactivity::Grabbable => {
                 Held::Body(PressedPoint { point, offset, grabs: false })
@@ -266,7 +284,7 @@ impl Pointer {
         match &mut self.held {
             Held::Tip(grip) => {
                 grip.drag_to(at, keys.alt || keys.ctrl);
-                interaction.load = grip.pull(keys.shift).map(|pull| (grip.handle.load(), pull));
+                interaction.load = grip.drag().map(|drag| (grip.arrow.load, grip.arrow.dragged(drag, keys.shift)));
             }
             Held::Base(held) => {
                 let has_left = f64::from(held.pressed.distance(at)) > DRAG_DISTANCE;
@@ -293,27 +311,16 @@ impl Pointer {
 
     /// Finds the target under the pointer, and sets the cursor.
     fn hover(&mut self, ui: &Ui, targets: &HitTargets<'_>, down: bool) {
-        (self.over_tip, self.over_base, self.over_body) = (None, None, None);
-        let cursor = match self.held {
-            Held::Tip(..) => Some(CursorIcon::Move),
-            Held::Body(_) | Held::Base(_) => Some(CursorIcon::Grabbing),
-            Held::Point(_) | Held::Space => Some(CursorIcon::AllScroll),
-            Held::Nothing => targets.response.hover_pos().filter(|_| !down).map(|at| {
-                self.over_tip = targets.handle(at);
-                if self.over_tip.is_some() {
-                    return CursorIcon::Move;
-                }
-                self.over_body = targets.point(targets.place(at));
-                self.over_base = base::near(targets.bases, at).copied();
-                if self.over_base.is_some() {
-                    return CursorIcon::Move;
-                }
-                match (self.over_body, targets.interactivity) {
-                    (Some(_), Interactivity::Grabbable) => CursorIcon::Grab,
-                    (Some(_), Interactivity::None) => CursorIcon::Crosshair,
-                    _ => CursorIcon::Default,
-                }
-            }),
+        let hovered = targets.response.hover_pos().filter(|_| self.held == Held::Nothing && !down);
+        self.over = hovered.map_or(Held::Nothing, |at| Self::take(targets, at));
+        let cursor = match (self.held, self.over) {
+            (Held::Tip(_), _) | (_, Held::Tip(_) | Held::Base(_)) => Some(CursorIcon::Move),
+            (Held::Body(_) | Held::Base(_), _) => Some(CursorIcon::Grabbing),
+            (Held::Point(_) | Held::Space, _) => Some(CursorIcon::AllScroll),
+            (_, Held::Body(_)) => Some(CursorIcon::Grab),
+            (_, Held::Point(_)) if targets.interactivity == Interactivity::None => Some(CursorIcon::Crosshair),
+            (_, Held::Point(_) | Held::Space) => Some(CursorIcon::Default),
+            (Held::Nothing, Held::Nothing) => None,
         };
         if let Some(cursor) = cursor {
             ui.set_cursor_icon(cursor);

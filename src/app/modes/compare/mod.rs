@@ -487,7 +487,7 @@ impl Compare {
         let forces = self.panes.first().and_then(|pane| pane.forces(input));
         let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
         let longest = |along: fn(egui::Vec2) -> f32| {
-            let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector)));
+            let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector())));
             lengths.fold(0.0, f64::max).min(ARROW_ROOM * height)
         };
         let (top, bottom) = ((0.08 * height).min(30.0), (0.16 * height).min(44.0));

@@ -12,7 +12,7 @@ use crate::app::session::fallback::Fallback;
 use crate::app::session::run::{Condition, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
-use crate::app::viewport::arrow::ForceArrows;
+use crate::app::viewport::arrow::LoadedBody;
 use crate::app::viewport::bars;
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
@@ -154,7 +154,7 @@ impl Pane {
     }
 
     /// Returns the load arrows on the displayed body: those of the scene that was asked for.
-    pub(super) fn forces<'a>(&'a self, input: &CompareInput<'a>) -> Option<ForceArrows<'a>> {
+    pub(super) fn forces<'a>(&'a self, input: &CompareInput<'a>) -> Option<LoadedBody<'a>> {
         let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
         self.view.forces(self.run.wanted.as_ref()?, time, (input.session, input.direction))
     }
@@ -197,13 +197,13 @@ impl Pane {
         let place = self.view.rect;
         let condition = self.run.condition();
         let forces = self.forces(input);
-        let handles = forces.map_or_else(Vec::new, |forces| forces.handles(&self.view.projection(controller)));
+        let arrows = forces.map_or_else(Vec::new, |forces| forces.arrows(&self.view.projection(controller)));
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
         // States that are no result show no values.
         let interactivity = if condition == Condition::Result { Interactivity::None } else { Interactivity::Absent };
         let BodyView { pointer, body, .. } = &mut self.view;
-        let (camera, handles) = (&*controller, &handles);
-        let targets = HitTargets { response: &response, camera, body, interactivity, handles, bases: &[] };
+        let (camera, arrows) = (&*controller, &arrows);
+        let targets = HitTargets { response: &response, camera, body, interactivity, arrows, bases: &[] };
         let interaction = pointer.process(ui, &targets);
         if interaction.camera != CameraMove::None {
             controller.follow(interaction.camera);
@@ -214,7 +214,7 @@ impl Pane {
         // The scene whose state diverges, if an equilibrium is displayed in its place.
         let wanted = self.run.wanted.as_ref().filter(|_| in_place.is_some());
         if let Some(forces) = self.forces(input) {
-            let body = ForceArrows { scene: in_place.unwrap_or(forces.scene), ..forces };
+            let body = LoadedBody { scene: in_place.unwrap_or(forces.scene), ..forces };
             let note = wanted.map(|wanted| equilibrium_text(body.scene, wanted));
             let overlay = Overlay {
                 view: &self.view,
