@@ -28,10 +28,8 @@ pub(crate) struct BodyMesh {
     largest: f64,
     /// Values of the field at both ends of the colour map.
     pub range: [f64; 2],
-    /// Field that the recent magnitudes belong to; `None` without such magnitudes.
-    recent_field: Option<Field>,
-    /// Largest magnitude of the field in the last seconds of a motion.
-    recent: Recent,
+    /// Largest magnitude of the field in the last seconds of a motion; `None` before the first update.
+    recent: Option<Recent>,
     /// Equations of the body; `None` before the first update.
     pub system: Option<Arc<System>>,
     pub geometry: Arc<DisplayGeometry>,
@@ -41,8 +39,9 @@ pub(crate) struct BodyMesh {
 }
 
 /// Largest magnitude of a field in the last seconds of a motion, collected in two consecutive time windows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Recent {
+    field: Field,
     /// Start of the current window, playing time in s.
     since: f64,
     /// Time of the last update, playing time in s.
@@ -59,8 +58,8 @@ impl Recent {
     /// Time constant of the narrowing of the range, s.
     const EASE: f64 = 0.7;
 
-    fn new(now: f64, largest: f64) -> Self {
-        Self { since: now, now, window: largest, before: largest, shown: largest }
+    fn new(field: Field, now: f64, largest: f64) -> Self {
+        Self { field, since: now, now, window: largest, before: largest, shown: largest }
     }
 
     /// Adds the field's largest magnitude at `now`, playing time in s. Returns the magnitude to show: it grows at once,
@@ -124,13 +123,10 @@ impl BodyMesh {
             self.stamp = stamp();
         }
         let now = played.unwrap_or_default();
-        let goes_on = played.is_some() && self.recent_field == Some(view.field) && view.fixed_range.is_none();
-        if !goes_on {
-            self.recent = Recent::new(now, self.largest);
-        }
-        self.recent_field = Some(view.field);
-        let follows = || view.field.range(self.recent.extend(now, self.largest));
-        self.range = view.fixed_range.unwrap_or_else(follows);
+        let goes_on = |recent: &Recent| played.is_some() && recent.field == view.field && view.fixed_range.is_none();
+        let recent = self.recent.filter(goes_on).unwrap_or(Recent::new(view.field, now, self.largest));
+        let recent = self.recent.insert(recent);
+        self.range = view.fixed_range.unwrap_or_else(|| view.field.range(recent.extend(now, self.largest)));
     }
 
     /// Moves the drawn points until the next [`Self::update`].

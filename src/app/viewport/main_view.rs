@@ -9,7 +9,7 @@ use crate::app::viewport::base::{Bases, CLOSE};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::objects;
-use crate::app::viewport::overlay::{self, Legends, Overlay};
+use crate::app::viewport::overlay::{self, MainOverlay, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe::{self, CardChoice, Pinned};
 use crate::app::viewport::projection::Projection;
@@ -437,7 +437,6 @@ impl MainView {
         }
         let sections = sections(shown);
         let (ghost, exact) = (content.ghost(), self.exact(content));
-        let live = session.live().map(|live| live.is_late(shown));
         let overlay = Overlay {
             view: &self.view,
             projection: self.projection(),
@@ -445,21 +444,19 @@ impl MainView {
             wanted: fallback.map(|_| simulation.scene()),
             options: content.options,
             apart: content.is_apart(),
-            ghost,
             exact: &exact,
-            live,
-            // The force of a paused motion would be that of the pointer's velocity alone.
-            mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
-            playback: Some(&session.playback),
-            sections: &sections,
-            reactions: &reactions,
             note,
-            legends: Some(Legends {
+            main: Some(MainOverlay {
+                ghost,
+                live: session.live().map(|live| live.is_late(shown)),
+                // The force of a paused motion would be that of the pointer's velocity alone.
+                mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
+                playback: &session.playback,
+                sections: &sections,
+                reactions: &reactions,
                 exact_scene: session.live().map_or(simulation.scene(), |live| &live.key),
                 errors,
                 areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
-                color_range: self.view.body.range,
-                has_values: self.view.body.has_values(),
             }),
         };
         overlay::paint(painter, &overlay, visuals);

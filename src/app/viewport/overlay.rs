@@ -24,24 +24,12 @@ pub(crate) struct Overlay<'a> {
     pub options: &'a ViewOptions,
     /// `true` if the elements are drawn apart from each other: nothing is painted at the body's own place then.
     pub apart: bool,
-    /// Displacement of the linear solution, m, if its outline is drawn.
-    pub ghost: Option<&'a [Vector2<f64>]>,
     /// Drawn outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
-    pub live: Option<bool>,
-    /// Grab of the body, and its force, N.
-    pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
-    /// Recorded past of the motion.
-    pub playback: Option<&'a Playback>,
-    /// Sections of the scene, each with its forces as text.
-    pub sections: &'a [(Section, String)],
-    /// Reactions of the supports, if one of them moves.
-    pub reactions: &'a [SupportReaction],
     /// Note about the state, and its colour.
     pub note: Option<(&'a str, Color32)>,
-    /// Content of line key and colour bar; `None` for a pane, which shares those of all panes.
-    pub legends: Option<Legends<'a>>,
+    /// Content of the view of Explore and Learn; `None` for a pane, which shares line key and colour bar with all panes.
+    pub main: Option<MainOverlay<'a>>,
 }
 
 impl Overlay<'_> {
@@ -52,18 +40,26 @@ impl Overlay<'_> {
     }
 }
 
-/// Content of the line key and the colour bar.
-pub(crate) struct Legends<'a> {
+/// Content of the overlays that a pane of Compare does not have.
+pub(crate) struct MainOverlay<'a> {
+    /// Displacement of the linear solution, m, if its outline is drawn.
+    pub ghost: Option<&'a [Vector2<f64>]>,
+    /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
+    pub live: Option<bool>,
+    /// Grab of the body, and its force, N.
+    pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
+    /// Recorded past of the motion.
+    pub playback: &'a Playback,
+    /// Sections of the scene, each with its forces as text.
+    pub sections: &'a [(Section, String)],
+    /// Reactions of the supports, if one of them moves.
+    pub reactions: &'a [SupportReaction],
     /// Scene of the reference solution.
     pub exact_scene: &'a Scene,
     /// Errors of the tip displacement, of the solution and of linear theory.
     pub errors: Errors,
     /// Relative changes of the area of the drawn body and of the linear solution.
     pub areas: [Option<f64>; 2],
-    /// Values of the field at both ends of the colour map.
-    pub color_range: [f64; 2],
-    /// `true` if the field has a value at a point of the body.
-    pub has_values: bool,
 }
 
 /// Paints all overlays; those of a pane are at the body only.
@@ -79,17 +75,17 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
     outlines(painter, overlay, &palette);
     let mut labels = Labels { painter, visuals, taken: Vec::new() };
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
-    if let Some(legends) = &overlay.legends {
-        labels.taken.extend(key(painter, overlay, legends, &palette));
-        labels.taken.extend(legend(painter, overlay, legends, &palette));
+    if let Some(main) = &overlay.main {
+        labels.taken.extend(key(painter, overlay, main, &palette));
+        labels.taken.extend(legend(painter, overlay, &palette));
     }
     on_body(&mut labels, overlay);
-    if overlay.legends.is_some() {
+    if let Some(main) = &overlay.main {
         scale_bar(painter, rect, &overlay.projection.camera, &palette);
+        pull(&mut labels, overlay, main);
     }
-    pull(&mut labels, overlay);
     if let Some((note, color)) = overlay.note {
-        let (below, above, beside) = if overlay.legends.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
+        let (below, above, beside) = if overlay.main.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
         let places = [
             (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
             (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
@@ -144,19 +140,20 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
     if overlay.options.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
-    if let Some(linear) = overlay.ghost {
+    if let Some(linear) = overlay.main.as_ref().and_then(|main| main.ghost) {
         draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
     if !overlay.apart {
         draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
     }
-    for line in overlay.exact.iter().filter(|_| overlay.live != Some(true)) {
+    let is_late = overlay.main.as_ref().is_some_and(|main| main.live == Some(true));
+    for line in overlay.exact.iter().filter(|_| !is_late) {
         // A background stroke keeps the line visible over the body.
         dashed(painter, projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
         dashed(painter, projection, line, Stroke::new(1.7, palette.exact));
     }
-    if overlay.options.trail {
-        trail(painter, overlay, palette);
+    if let Some(main) = overlay.main.as_ref().filter(|_| overlay.options.trail) {
+        trail(painter, overlay, main.playback, palette);
     }
 }
 
@@ -186,9 +183,13 @@ fn on_body(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
         }
         loads(labels, overlay, &palette);
         weights(labels, overlay, &palette);
-        moved_supports(labels, overlay, &palette);
+        if let Some(main) = &overlay.main {
+            moved_supports(labels, overlay, main.reactions, &palette);
+        }
         probes(labels, overlay);
-        sections(labels, overlay, &palette);
+        if let Some(main) = &overlay.main {
+            sections(labels, overlay, main.sections, &palette);
+        }
     }
 }
 
@@ -202,13 +203,13 @@ fn edge_segments<'a>(overlay: &'a Overlay<'_>, edge: &str) -> impl Iterator<Item
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
-fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
+fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section, String)], palette: &Palette) {
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
     let (is_roomy, painter) = (has_legend(overlay.projection.rect.size()), labels.painter);
-    for (i, (section, text)) in overlay.sections.iter().enumerate() {
+    for (i, (section, text)) in sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.view.body.magnification;
         let [from, to] = [0, 1].map(|i| overlay.projection.point(end(i)));
         // The axes of the cut as it is drawn: a magnified body has other ones.
@@ -247,7 +248,7 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
             x if x < -0.1 => Align2::RIGHT_BOTTOM,
             _ => Align2::CENTER_BOTTOM,
         };
-        let label = match (is_roomy, overlay.sections.len()) {
+        let label = match (is_roomy, sections.len()) {
             (true, 1) => text.clone(),
             (true, _) => format!("{}: {text}", i + 1),
             (false, 1) => continue,
@@ -297,11 +298,10 @@ fn dashed(painter: &Painter, projection: &Projection, line: &[Vector2<f64>], str
 }
 
 /// Paints the fading trail of the first probe over the last seconds.
-fn trail(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
+fn trail(painter: &Painter, overlay: &Overlay<'_>, playback: &Playback, palette: &Palette) {
     /// Duration of the trail, s.
     const DURATION: f64 = 2.0;
     const MAX_PIECES: usize = 400;
-    let Some(playback) = overlay.playback else { return };
     let color = palette.solution(overlay.body.scene);
     let end = playback.shown.unwrap_or(f64::INFINITY);
     let end = end.min(playback.history.samples.back().map_or(0.0, |s| s.time));
@@ -318,11 +318,11 @@ fn trail(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
 }
 
 /// Paints the mouse spring from the body to the pointer, with its force.
-fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
+fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>, main: &MainOverlay<'_>) {
     /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
-    let Some((spring, force)) = overlay.mouse_spring else { return };
+    let Some((spring, force)) = main.mouse_spring else { return };
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
     let mesh = overlay.body.system.mesh();
     let weights = mesh.weights(spring.point()).unwrap_or_default();
@@ -454,10 +454,10 @@ fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
 }
 
 /// Paints the reaction of every moving support as an arrow.
-fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
+fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, reactions: &[SupportReaction], palette: &Palette) {
     /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
-    for (support, reaction) in overlay.body.scene.supports.iter().zip(overlay.reactions).filter(|(s, _)| s.moves()) {
+    for (support, reaction) in overlay.body.scene.supports.iter().zip(reactions).filter(|(s, _)| s.moves()) {
         let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
@@ -479,7 +479,7 @@ fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Pale
 }
 
 /// Paints the colour bar with its title and ticks in the lower right corner, and returns its area.
-fn legend(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
+fn legend(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) -> Option<Rect> {
     const MAX_TICKS: u32 = 5;
     const SIZE: Vec2 = vec2(240.0, 10.0);
     let rect = overlay.view.rect;
@@ -488,17 +488,18 @@ fn legend(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palet
     }
     let field = overlay.options.field;
     let (factor, unit) = field.display_unit();
-    let [low, high] = legends.color_range.map(|end| factor * end);
-    let (power, symbol) = if legends.has_values { prefix(&[low, high], unit) } else { (0, "") };
+    let [low, high] = overlay.view.body.range.map(|end| factor * end);
+    let has_values = overlay.view.body.has_values();
+    let (power, symbol) = if has_values { prefix(&[low, high], unit) } else { (0, "") };
     let raw = overlay.options.raw && !field.is_of_elements() && !field.is_of_displacement();
     let raw = if raw { tr(", each element alone") } else { "" };
-    let range = match (legends.has_values, overlay.options.fixed_range) {
+    let range = match (has_values, overlay.options.fixed_range) {
         (false, _) => tr(", not known"),
         (true, Some(_)) => tr(", fixed range"),
         (true, None) => "",
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
-    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| legends.has_values).map(|value| {
+    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| has_values).map(|value| {
         let text = engineering(value / 10f64.powi(power), "");
         (((value - low) / (high - low)) as f32, text)
     });
@@ -521,7 +522,7 @@ fn legend(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palet
 }
 
 /// Paints the line key with the error of each solution, and returns its area.
-fn key(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palette: &Palette) -> Option<Rect> {
+fn key(painter: &Painter, overlay: &Overlay<'_>, main: &MainOverlay<'_>, palette: &Palette) -> Option<Rect> {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     let rect = overlay.view.rect;
@@ -529,28 +530,28 @@ fn key(painter: &Painter, overlay: &Overlay<'_>, legends: &Legends<'_>, palette:
         return None;
     }
     let values = |word: &str, [error, bound]: [Option<f64>; 2], area: Option<f64>| {
-        let error = error.filter(|_| overlay.live != Some(true));
-        let error = error.map(|error| format!("  {}", error_text(Some(error), bound, overlay.live.is_some())));
+        let error = error.filter(|_| main.live != Some(true));
+        let error = error.map(|error| format!("  {}", error_text(Some(error), bound, main.live.is_some())));
         let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
         [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()
     };
-    let Errors { own, bound, linear, .. } = legends.errors;
+    let Errors { own, bound, linear, .. } = main.errors;
     let own = match overlay.body.scene.analysis {
-        Analysis::Static => values(overlay.named().solver.method.id(), [own, bound], legends.areas[0]),
-        Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], legends.areas[0]),
+        Analysis::Static => values(overlay.named().solver.method.id(), [own, bound], main.areas[0]),
+        Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], main.areas[0]),
     };
     let mut lines = Vec::new();
     if overlay.view.body.magnification != 1.0 {
         lines.push((palette.text, None, magnified(overlay.view.body.magnification)));
     }
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
-    if overlay.ghost.is_some() {
-        let text = values(MethodKind::Linear.id(), [linear, None], legends.areas[1]);
+    if main.ghost.is_some() {
+        let text = values(MethodKind::Linear.id(), [linear, None], main.areas[1]);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
         // A body in place of a search has another load.
-        let load = overlay.wanted.and_then(|_| load_text(legends.exact_scene));
+        let load = overlay.wanted.and_then(|_| load_text(main.exact_scene));
         let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
         lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }

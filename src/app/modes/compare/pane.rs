@@ -219,20 +219,13 @@ impl Pane {
             let overlay = Overlay {
                 view: &self.view,
                 projection: self.view.projection(controller),
-                sections: &[],
                 apart: false,
                 body,
                 wanted,
                 options: input.view,
-                ghost: None,
                 exact: if wanted.is_some() { &[] } else { exact },
-                live: None,
-                mouse_spring: None,
-                reactions: &[],
-                // The past of a motion is not drawn.
-                playback: None,
                 note: note.as_deref().map(|note| (note, palette.text)),
-                legends: None,
+                main: None,
             };
             overlay::paint(&painter, &overlay, ui.visuals());
         }
