@@ -57,55 +57,8 @@ const fn rgb(hex: u32) -> Color32 {
     Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
 }
 
-const DARK: Palette = Palette {
-    dark: true,
-    canvas: rgb(0x1E2228),
-    panel: rgb(0x262B33),
-    control: rgb(0x363D48),
-    hovered: rgb(0x454E5C),
-    line: rgb(0x3A414C),
-    text: rgb(0xE6E9EF),
-    secondary: rgb(0xA9B1BD),
-    accent: rgb(0x6CB6FF),
-    chosen: rgb(0x2F4A6B),
-    good: rgb(0x7CDB9A),
-    warning: rgb(0xF2C14E),
-    error: rgb(0xFF8A80),
-    large: rgb(0xFF9F5A),
-    error_chip: rgb(0x44282C),
-    exact: rgb(0x4FD1C5),
-    rest: rgb(0x6E7784),
-    support: rgb(0xB4BBC6),
-    load: rgb(0xFF6B61),
-    mouse_spring: rgb(0x78DC82),
-    absent: rgb(0x7C8088),
-    wire: [12, 20, 32, 120],
-};
-
-const LIGHT: Palette = Palette {
-    dark: false,
-    canvas: rgb(0xF6F7F9),
-    panel: rgb(0xEAEDF1),
-    control: rgb(0xD8DDE4),
-    hovered: rgb(0xC8CFD9),
-    line: rgb(0xC9CFD8),
-    text: rgb(0x1C2128),
-    secondary: rgb(0x4A5360),
-    accent: rgb(0x0B5CAD),
-    chosen: rgb(0xBFDAF5),
-    good: rgb(0x0B6B35),
-    warning: rgb(0x7A5000),
-    error: rgb(0xA31B1B),
-    large: rgb(0x9A3F00),
-    error_chip: rgb(0xFBE3E1),
-    exact: rgb(0x007D73),
-    rest: rgb(0x7E8793),
-    support: rgb(0x464E5A),
-    load: rgb(0xC0242B),
-    mouse_spring: rgb(0x0A7828),
-    absent: rgb(0x7C8088),
-    wire: [255, 255, 255, 110],
-};
+const DARK: Palette = Palette::of(true);
+const LIGHT: Palette = Palette::of(false);
 
 impl Default for Palette {
     fn default() -> Self {
@@ -114,6 +67,36 @@ impl Default for Palette {
 }
 
 impl Palette {
+    const fn of(dark: bool) -> Self {
+        const fn color(dark: bool, on_dark: u32, on_light: u32) -> Color32 {
+            rgb(if dark { on_dark } else { on_light })
+        }
+        Self {
+            dark,
+            canvas: color(dark, 0x1E2228, 0xF6F7F9),
+            panel: color(dark, 0x262B33, 0xEAEDF1),
+            control: color(dark, 0x363D48, 0xD8DDE4),
+            hovered: color(dark, 0x454E5C, 0xC8CFD9),
+            line: color(dark, 0x3A414C, 0xC9CFD8),
+            text: color(dark, 0xE6E9EF, 0x1C2128),
+            secondary: color(dark, 0xA9B1BD, 0x4A5360),
+            accent: color(dark, 0x6CB6FF, 0x0B5CAD),
+            chosen: color(dark, 0x2F4A6B, 0xBFDAF5),
+            good: color(dark, 0x7CDB9A, 0x0B6B35),
+            warning: color(dark, 0xF2C14E, 0x7A5000),
+            error: color(dark, 0xFF8A80, 0xA31B1B),
+            large: color(dark, 0xFF9F5A, 0x9A3F00),
+            error_chip: color(dark, 0x44282C, 0xFBE3E1),
+            exact: color(dark, 0x4FD1C5, 0x007D73),
+            rest: color(dark, 0x6E7784, 0x7E8793),
+            support: color(dark, 0xB4BBC6, 0x464E5A),
+            load: color(dark, 0xFF6B61, 0xC0242B),
+            mouse_spring: color(dark, 0x78DC82, 0x0A7828),
+            absent: rgb(0x7C8088),
+            wire: if dark { [12, 20, 32, 120] } else { [255, 255, 255, 110] },
+        }
+    }
+
     /// Returns the palette that matches `visuals`.
     pub(crate) fn new(visuals: &Visuals) -> Self {
         if visuals.dark_mode { DARK } else { LIGHT }
