@@ -3,9 +3,8 @@
 use crate::app::action::Action;
 use crate::app::language::sentence;
 use crate::app::prelude::*;
-use crate::app::readout::Readout;
 use crate::app::session::facts::first_probe;
-use crate::app::session::object_name;
+use crate::app::session::{Session, object_name};
 use crate::app::widgets::palette::Palette;
 use crate::app::widgets::text::UNKNOWN;
 
@@ -65,18 +64,18 @@ pub(crate) struct Errors {
 
 /// Compares the state, and the state of linear theory, with the reference solution. Returns no errors while the body
 /// moves or is grabbed: the reference solution holds for equilibrium only.
-pub(crate) fn errors(input: &Readout<'_>) -> Errors {
-    let simulation = input.simulation;
+pub(crate) fn errors(session: &Session) -> Errors {
+    let simulation = session.simulation();
     let at_rest = simulation.is_at_rest() && simulation.mouse_spring().is_none();
-    let Some(reference) = input.reference.filter(|_| at_rest) else { return Errors::default() };
+    let Some(reference) = session.known_reference().filter(|_| at_rest) else { return Errors::default() };
     let Some(first) = reference.first() else { return Errors::default() };
     // A reference that is behind the load belongs to the body that it was asked for.
-    let behind = input.session.live().filter(|live| !live.is_of(input.scene));
+    let behind = session.live().filter(|live| !live.is_of(session.scene()));
     let percent_of = |u: Option<Vector2<f64>>| Some((error_percent(u?, first.displacement)?, u?));
     // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
-    let is_elsewhere = input.path.is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
+    let is_elsewhere = session.path().is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
     let own = percent_of(behind.map_or_else(|| first_probe(simulation), |behind| behind.own))
-        .filter(|_| input.session.fallback().is_none() && !is_elsewhere);
+        .filter(|_| session.fallback().is_none() && !is_elsewhere);
     let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
         let theory = reference.linear.filter(|_| simulation.is_linear());
         let [of_theory, of_mesh] =
@@ -89,7 +88,7 @@ pub(crate) fn errors(input: &Readout<'_>) -> Errors {
             _ => ErrorSource::Mesh,
         }
     });
-    let linear = behind.map_or_else(|| input.session.linear().and_then(first_probe), |behind| behind.linear);
+    let linear = behind.map_or_else(|| session.linear().and_then(first_probe), |behind| behind.linear);
     let linear = percent_of(linear).map(|(error, _)| error);
     let own = own.map(|(error, _)| error);
     Errors { own, bound: own.map(|error| first.error_bound(error)), linear, source }
@@ -117,24 +116,28 @@ pub(crate) fn strain_text(strain: f64) -> Option<String> {
 
 /// Returns a reason to doubt a result, or its error if that is small, in a few words that stand beside the error; `None`
 /// if there is none, or no error.
-pub(crate) fn doubt(input: &Readout<'_>, errors: &Errors) -> Option<String> {
-    if !input.simulation.status().is_success() || input.simulation.motion().is_some() {
+pub(crate) fn doubt(session: &Session, errors: &Errors) -> Option<String> {
+    if !session.simulation().status().is_success() || session.simulation().motion().is_some() {
         return None;
     }
-    let quality = input.session.quality();
-    if quality.is_inside_out(input.simulation) {
+    let quality = session.quality();
+    if quality.is_inside_out(session.simulation()) {
         // The status has it too.
         return errors.own.map(|_| tr("inverted elements").to_owned());
     }
     let strained = strain_text(quality.deformation.max_strain);
-    let known = errors.own.zip(input.reference.and_then(Reference::first));
+    let known = errors.own.zip(session.known_reference().and_then(Reference::first));
     let coarse = known.and_then(|(own, first)| coarse_text(own, &first));
     let doubts: Vec<String> = strained.into_iter().chain(coarse).collect();
     if !doubts.is_empty() {
         return Some(doubts.join(" · "));
     }
     let small = errors.own.filter(|&own| !is_large(own));
-    let off = input.reference.filter(|_| small.is_some())?.beam_off_by_percent.filter(|&off| error_level(off) > 0)?;
+    let off = session
+        .known_reference()
+        .filter(|_| small.is_some())?
+        .beam_off_by_percent
+        .filter(|&off| error_level(off) > 0)?;
     Some(said(&Claim::beam_theory(off)))
 }
 
@@ -179,11 +182,11 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
 }
 
 /// Returns the status as a sentence, and `true` if it reports a failure.
-pub(crate) fn status_text(input: &Readout<'_>) -> (String, bool) {
-    let simulation = input.simulation;
+pub(crate) fn status_text(session: &Session) -> (String, bool) {
+    let simulation = session.simulation();
     let moves = simulation.motion().is_some();
     match simulation.status() {
-        Status::Running | Status::Finished if !input.session.is_running() => (tr("Paused").to_owned(), false),
+        Status::Running | Status::Finished if !session.is_running() => (tr("Paused").to_owned(), false),
         // The duration applies to runs without a window; in the window a motion continues.
         Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
         Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
@@ -200,9 +203,9 @@ pub(crate) fn status_text(input: &Readout<'_>) -> (String, bool) {
 
 /// Returns the status in one line, such as `Converged · stable · 21 iterations`, and `true` if it needs attention.
 /// `remedy` stands beside it: its sentence is not repeated.
-pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, bool) {
-    let simulation = input.simulation;
-    let (mut text, bad) = status_text(input);
+pub(crate) fn summary(session: &Session, remedy: Option<&Remedy>) -> (String, bool) {
+    let simulation = session.simulation();
+    let (mut text, bad) = status_text(session);
     if bad {
         return (text, true);
     }
@@ -212,7 +215,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
             text.push_str(&part);
         }
     };
-    let inside_out = input.session.quality().is_inside_out(simulation);
+    let inside_out = session.quality().is_inside_out(simulation);
     if inside_out {
         add(tr("inverted elements").to_owned());
     }
@@ -223,7 +226,7 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
     if let Some(stable) = stability(simulation) {
         add(tr(if stable { "stable" } else { "unstable" }).to_owned());
     }
-    match input.session.timed_from_rest().filter(|_| simulation.status().is_success()) {
+    match session.timed_from_rest().filter(|_| simulation.status().is_success()) {
         Some(solve) if !solve.is_solved => add(tr("not reached from rest").to_owned()),
         // From a state under another load, fewer or more may have been needed.
         Some(solve) if solve.iterations > 0 => add(count(solve.iterations, "iteration")),
@@ -238,15 +241,15 @@ pub(crate) fn summary(input: &Readout<'_>, remedy: Option<&Remedy>) -> (String, 
         }
         add(fill!("residual %{residual}", residual = format!("{:.1e}", simulation.residual())));
     }
-    if runs_away(input) {
+    if runs_away(session) {
         add(tr("diverges if it runs on").to_owned());
     }
     notes_on_mesh(simulation).iter().for_each(|note| add(said(note)));
-    if let Some(path) = input.path.filter(|_| simulation.status().is_success()) {
+    if let Some(path) = session.path().filter(|_| simulation.status().is_success()) {
         path.claims().map(|claim| said(&claim)).for_each(&mut add);
     }
-    let is_critical = input.path.and_then(|path| path.critical).is_some_and(|factor| factor <= 1.0);
-    (text, inside_out || is_critical || runs_away(input) || stability(simulation) == Some(false))
+    let is_critical = session.path().and_then(|path| path.critical).is_some_and(|factor| factor <= 1.0);
+    (text, inside_out || is_critical || runs_away(session) || stability(simulation) == Some(false))
 }
 
 /// Returns `true` if a converged equilibrium is stable; `None` if it has no certificate.
@@ -256,16 +259,16 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
 }
 
 /// Returns the spectral radius ρ of the warped iteration at the equilibrium; `None` if that is not known.
-pub(crate) fn rho(input: &Readout<'_>) -> Option<f64> {
-    let own = || input.simulation.equilibrium().filter(|_| input.simulation.status().is_success());
-    input.session.facts().rho.get(input.scene).copied().or_else(|| own()?.certificate()?.fixed_point_rho)
+pub(crate) fn rho(session: &Session) -> Option<f64> {
+    let own = || session.simulation().equilibrium().filter(|_| session.simulation().status().is_success());
+    session.facts().rho.get(session.scene()).copied().or_else(|| own()?.certificate()?.fixed_point_rho)
 }
 
 /// Returns `true` if a result was accepted of a warped iteration that diverges if it runs on.
-fn runs_away(input: &Readout<'_>) -> bool {
-    let is_accepted = *input.simulation.status() == Status::Accepted;
-    let is_warped = input.scene.solver.method == MethodKind::Warped;
-    is_accepted && is_warped && rho(input).is_some_and(|rho| rho > 1.0)
+fn runs_away(session: &Session) -> bool {
+    let is_accepted = *session.simulation().status() == Status::Accepted;
+    let is_warped = session.scene().solver.method == MethodKind::Warped;
+    is_accepted && is_warped && rho(session).is_some_and(|rho| rho > 1.0)
 }
 
 /// Describes the equilibrium that is drawn in place of one that was not found: its load, and the load that was asked for, with
@@ -294,8 +297,8 @@ pub(crate) fn equilibrium_text(drawn: &Scene, wanted: &Scene) -> String {
 }
 
 /// Describes a drawn body that is not the result for the scene; `None` if it is.
-pub(crate) fn state_text(input: &Readout<'_>) -> Option<String> {
-    input.session.fallback().map(|drawn| equilibrium_text(drawn.scene(), input.scene))
+pub(crate) fn state_text(session: &Session) -> Option<String> {
+    session.fallback().map(|drawn| equilibrium_text(drawn.scene(), session.scene()))
 }
 
 /// Returns the magnitude of a scene's only load as text; `None` where [`only_load`] is.
@@ -321,23 +324,24 @@ const EXPLICIT: &str = "An explicit integrator explodes if its time step is too 
                         make the longest possible step shorter.";
 
 /// Returns `true` if it is known that no error of the result can be measured.
-pub(crate) fn is_without_reference(input: &Readout<'_>) -> bool {
-    input.reference_failure.is_some() || input.reference.is_some_and(|reference| reference.first().is_none())
+pub(crate) fn is_without_reference(session: &Session) -> bool {
+    session.reference_failure().is_some()
+        || session.known_reference().is_some_and(|reference| reference.first().is_none())
 }
 
 /// Explains the status, one sentence per entry.
-pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
-    let simulation = input.simulation;
-    let mut lines: Vec<String> = input.has_failed().then(|| status_text(input).0).into_iter().collect();
+pub(crate) fn explanation(session: &Session) -> Vec<String> {
+    let simulation = session.simulation();
+    let mut lines: Vec<String> = session.has_failed().then(|| status_text(session).0).into_iter().collect();
     let is_solved = match simulation.motion() {
         Some(_) => !matches!(simulation.status(), Status::Stopped(_)),
         None => simulation.status().is_success(),
     };
-    if is_without_reference(input) && simulation.motion().is_none() {
-        let reason = error_tip(input.reference, input.reference_failure);
+    if is_without_reference(session) && simulation.motion().is_none() {
+        let reason = error_tip(session.known_reference(), session.reference_failure());
         lines.push(fill!("The error is not known. %{reason}", reason));
     }
-    if is_solved && input.session.quality().is_inside_out(simulation) {
+    if is_solved && session.quality().is_inside_out(simulation) {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
                     equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());
@@ -347,7 +351,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "back substitution"));
         lines.push(fill!("%{steps} so far, with %{solves}.", steps, solves));
         lines.push(
-            tr(match input.scene.dynamics.integrator.entry().is_explicit() {
+            tr(match session.scene().dynamics.integrator.entry().is_explicit() {
                 true => EXPLICIT,
                 false => {
                     "A time step that does not converge is halved. The drift is the energy that the integrator adds."
@@ -358,14 +362,14 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         return lines;
     }
     lines.extend(notes_on_mesh(simulation).iter().map(|note| sentence(&said(note))));
-    let (residual, asked) = (number(two_digits(simulation.residual())), number(input.scene.solver.tolerance));
+    let (residual, asked) = (number(two_digits(simulation.residual())), number(session.scene().solver.tolerance));
     if *simulation.status() == Status::Accepted {
         let text = "Accepted after %{iterations} from rest, as the scene asks: the relative residual is %{residual}, the \
                     tolerance is %{asked}.";
         lines.push(fill!(text, iterations = count(simulation.iterations(), "iteration"), residual, asked));
     }
     let part = simulation.equilibrium().map(|search| search.load_factor()).filter(|part| *part < 1.0);
-    if let Some(part) = part.filter(|_| simulation.residual() <= input.scene.solver.tolerance) {
+    if let Some(part) = part.filter(|_| simulation.residual() <= session.scene().solver.tolerance) {
         let text = "The last iterate balances %{part} of the load; the next step of the load is not reached.";
         lines.push(fill!(text, part = percent(100.0 * part)));
     } else if !simulation.status().is_success() {
@@ -373,8 +377,8 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
                     is %{asked}.";
         lines.push(fill!(text, residual, asked));
     }
-    let rho = rho(input).filter(|_| input.scene.solver.method == MethodKind::Warped);
-    if let Some(rho) = rho.filter(|_| !simulation.status().is_success() || runs_away(input)) {
+    let rho = rho(session).filter(|_| session.scene().solver.method == MethodKind::Warped);
+    if let Some(rho) = rho.filter(|_| !simulation.status().is_success() || runs_away(session)) {
         let text = if rho > 1.0 {
             "At the equilibrium that is sought, each iteration multiplies a small error by about ρ = %{rho}: it grows."
         } else {
@@ -383,7 +387,7 @@ pub(crate) fn explanation(input: &Readout<'_>) -> Vec<String> {
         };
         lines.push(fill!(text, rho = rho_number(rho)));
     }
-    let claims = Claim::of_result(simulation, rho, input.path.as_ref(), None);
+    let claims = Claim::of_result(simulation, rho, session.path().as_ref(), None);
     // The status has the others.
     let explains = |claim: &&Claim| match claim.id {
         // An iterate that was accepted early is no equilibrium; the remedy offers the method that helps a diverging one.
@@ -406,8 +410,8 @@ pub(crate) struct Remedy {
 }
 
 /// Returns the most effective remedy; `None` if nothing is wrong or no edit helps.
-pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
-    let (simulation, scene) = (input.simulation, input.scene);
+pub(crate) fn remedy(session: &Session, errors: &Errors) -> Option<Remedy> {
+    let (simulation, scene) = (session.simulation(), session.scene());
     let has_stopped = matches!(simulation.status(), Status::Stopped(_));
     if has_stopped && scene.dynamics.integrator.entry().is_explicit() {
         let action = Action::edit("Integrator", scene, |scene| scene.dynamics.integrator = IntegratorKind::TrBdf2);
@@ -418,7 +422,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         |text: &str, offer| Some(Remedy { text: sentence(text), offer: tr(offer).to_owned(), action: Action::Reset });
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
-        let is_inverted = is_free && input.session.quality().is_inside_out(simulation);
+        let is_inverted = is_free && session.quality().is_inside_out(simulation);
         return if is_inverted { restart(tr("inverted elements"), "Reset") } else { None };
     }
     let with_newton = |text: String| {
@@ -426,7 +430,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         Remedy { text, offer: tr("Use newton").to_owned(), action }
     };
     if !simulation.status().is_success() {
-        let text = match rho(input) {
+        let text = match rho(session) {
             Some(rho) if rho > 1.0 => fill!("Does not converge: ρ = %{rho} > 1.", rho = rho_number(rho)),
             Some(rho) if scene.solver.method == MethodKind::Warped => {
                 fill!("Does not converge from rest, though ρ = %{rho} < 1.", rho = rho_number(rho))
@@ -436,7 +440,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
         return (scene.solver.method != MethodKind::Newton).then(|| with_newton(text));
     }
     // Loading from rest would lead to an unstable equilibrium if the path buckles.
-    let plain = input.path.filter(|path| path.buckling.is_none());
+    let plain = session.path().filter(|path| path.buckling.is_none());
     if let Some(elsewhere) = plain.and_then(|path| path.claims().find(|claim| claim.id == "elsewhere")) {
         return restart(&said(&elsewhere), "Load from rest");
     }
@@ -444,7 +448,7 @@ pub(crate) fn remedy(input: &Readout<'_>, errors: &Errors) -> Option<Remedy> {
     let off = percent(own?);
     if errors.source == Some(ErrorSource::MeshOrIteration) {
         let text = "%{error} error: the iteration is stopped early.";
-        let (offer, label, method) = match runs_away(input) {
+        let (offer, label, method) = match runs_away(session) {
             true => ("Use newton", "Method", MethodKind::Newton),
             false => ("Iterate to the tolerance", "Accept after", scene.solver.method),
         };

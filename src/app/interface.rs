@@ -12,7 +12,6 @@ pub(super) use crate::app::action::Action;
 pub(super) use crate::app::language::{area_text, sentence, spaced};
 pub(super) use crate::app::platform::IS_PAGE;
 pub(super) use crate::app::prelude::*;
-pub(super) use crate::app::readout::Readout;
 pub(super) use crate::app::session::Session;
 pub(super) use crate::app::session::document::OpeningLoads;
 pub(super) use crate::app::session::playback::Playback;

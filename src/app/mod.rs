@@ -15,7 +15,6 @@ mod offscreen;
 mod panel;
 mod platform;
 mod prelude;
-mod readout;
 mod session;
 mod shell;
 mod task;

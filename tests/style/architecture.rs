@@ -33,7 +33,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("session", &["app/session"]),
     ("widgets", &["app/widgets"]),
     ("view options", &["app/view_options", "app/action"]),
-    ("readout", &["app/readout", "app/diagnosis", "app/interface"]),
+    ("diagnosis", &["app/diagnosis", "app/interface"]),
     ("viewport", &["app/viewport"]),
     ("panel", &["app/panel"]),
     ("modes", &["app/modes"]),

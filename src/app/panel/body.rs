@@ -87,7 +87,7 @@ impl CellsThatFollow {
 
 pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
     const SPAN: f64 = 10.0;
-    let Some(original) = &panel.input.session.document().original.beam else { return };
+    let Some(original) = &panel.session.document().original.beam else { return };
     const LENGTH: &str =
         "Length of the beam, m. The number of cells along it adapts; points with loads or supports move with it.";
     const HEIGHT: &str =
@@ -113,17 +113,13 @@ pub(super) fn size(ui: &mut Ui, panel: &mut Panel<'_>, beam: &Beam) {
 }
 
 /// Returns a summary of the mesh, such as `5 × 1, 24 unknowns`.
-pub(super) fn mesh_summary(input: &Readout<'_>) -> String {
-    let cells = input
-        .scene
-        .beam
-        .as_ref()
-        .map_or_else(|| tr("from a file").to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
-    let made = input.simulation.scene();
-    if !has_mesh_of(made, input.scene) {
-        return cells;
-    }
-    joined([cells, count(input.simulation.system().dofs() as u64, "unknown")])
+pub(super) fn mesh_summary(session: &Session) -> String {
+    let beam = session.scene().beam.as_ref();
+    let cells =
+        beam.map_or_else(|| tr("from a file").to_owned(), |beam| format!("{} × {}", beam.cells[0], beam.cells[1]));
+    let simulation = session.simulation();
+    let unknowns = || count(simulation.system().dofs() as u64, "unknown");
+    joined([cells].into_iter().chain(has_mesh_of(simulation.scene(), session.scene()).then(unknowns)))
 }
 
 pub(super) fn material(ui: &mut Ui, panel: &mut Panel<'_>) {

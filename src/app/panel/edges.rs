@@ -112,7 +112,7 @@ fn row(
         let chosen = panel.state.force.filter(|chosen| *chosen != i);
         panel.state.force = chosen.map(|chosen| if chosen > i { chosen - 1 } else { chosen });
     }
-    panel.edit(SECTION, |scene| object.change(scene, panel.input.simulation.system(), change));
+    panel.edit(SECTION, |scene| object.change(scene, panel.session.simulation().system(), change));
 }
 
 /// Shows the coordinates of a point and its width, m; returns the change that was typed. The reason for which a text is
@@ -162,7 +162,7 @@ pub(super) fn summary(scene: &Scene) -> String {
 }
 
 pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (scene, system) = (panel.scene, panel.input.simulation.system());
+    let (scene, system) = (panel.scene, panel.session.simulation().system());
     let edges = |can_carry: fn(&System, &Edge) -> bool| {
         system.edges().iter().filter(move |edge| can_carry(system, edge)).map(|edge| Place::from(edge.name()))
     };

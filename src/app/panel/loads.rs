@@ -39,7 +39,7 @@ pub(super) fn summary(scene: &Scene) -> String {
 
 /// Shows the magnitude and the direction of the force; nothing if the scene has none.
 pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, scene, document) = (panel.input, panel.scene, panel.input.session.document());
+    let (session, scene, document) = (panel.session, panel.scene, panel.session.document());
     let mut all = forces(scene).map(|(i, _, force)| (i, force));
     let first = all.next();
     let Some((chosen, force)) = all.find(|(i, _)| Some(*i) == panel.state.force).or(first) else { return };
@@ -48,7 +48,7 @@ pub(super) fn force(ui: &mut Ui, panel: &mut Panel<'_>) {
     let as_opened = forces(&document.original).find(|(i, ..)| *i == chosen);
     let (original, original_direction) = polar_form(as_opened.map_or([0.0; 2], |(_, _, force)| force));
     let direction = direction.unwrap_or(panel.state.force_direction());
-    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, input.simulation.system()).force;
+    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, session.simulation().system()).force;
     // A negative force can be typed for one in the opposite direction.
     let limit = const { keys::range("load.force") };
     let field = NumberField::new("Force", Limit { min: -limit.max, ..limit }, 0.0..=largest)
@@ -77,7 +77,7 @@ fn set_force(panel: &mut Panel<'_>, label: &'static str, load: usize, (magnitude
 
 /// Shows gravity and the first moment; a new moment is put on an edge that can carry it.
 pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, scene, document) = (panel.input, panel.scene, panel.input.session.document());
+    let (session, scene, document) = (panel.session, panel.scene, panel.session.document());
     let (magnitude, direction) = polar_form(gravity_of(scene).unwrap_or_default());
     let direction = direction.or(panel.state.gravity_direction).unwrap_or(DOWN);
     let original = polar_form(gravity_of(&document.original).unwrap_or_default()).0;
@@ -92,14 +92,14 @@ pub(super) fn gravity_and_moment(ui: &mut Ui, panel: &mut Panel<'_>) {
             None => scene.loads.push(Load::gravity(vector(new, direction))),
         });
     }
-    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, input.simulation.system()).moment;
+    let [usual, largest] = LoadRanges::new(document.opened, &scene.material, session.simulation().system()).moment;
     let field = NumberField::new("Moment", const { keys::range("load.moment") }, -largest..=largest)
         .around(usual)
         .tip("Moment on an edge, N m, counter-clockwise; it rotates with the edge. 2πEI/L bends a beam into a circle.");
     let [current, original] = [scene, &document.original].map(|scene| moment_of(scene).unwrap_or(0.0));
     let Some(new) = panel.number(ui, &field, current, Some(original)) else { return };
     let own = scene.loads.iter().position(Load::is_moment);
-    let edge = edges::edge_for_moment(scene, input.simulation.system());
+    let edge = edges::edge_for_moment(scene, session.simulation().system());
     match (own, edge) {
         (Some(own), _) => panel.edit("Moment", |scene| _ = scene.set_moment(own, new)),
         (None, Some(edge)) => panel.edit("Moment", |scene| scene.loads.push(Load::moment(&edge, new))),

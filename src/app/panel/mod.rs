@@ -5,7 +5,6 @@ use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::scroll_area::ScrollBarVisibility;
 use egui::text::{LayoutJob, TextWrapping};
 
-use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::viewport::arrow::DOWN;
 
@@ -58,20 +57,12 @@ impl PanelState {
     }
 }
 
-/// Shows the content of the panel; the details of the result if its `errors` are given.
-pub(super) fn show(
-    ui: &mut Ui,
-    input: &Readout<'_>,
-    errors: Option<&Errors>,
-    state: &mut PanelState,
-    view: &mut ViewOptions,
-    actions: &mut Vec<Action>,
-) {
+/// Shows the content of the panel, and `has_result` the details of the result.
+pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, has_result: bool) {
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
     // Set again below by the widget under the pointer.
-    view.edge = None;
-    let scene = input.scene;
-    let panel = &mut Panel { input, scene, state, view, actions };
+    panel.view.edge = None;
+    let (session, scene) = (panel.session, panel.scene);
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
     scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         if !scene.about.is_empty() {
@@ -101,14 +92,14 @@ pub(super) fn show(
             fold(ui, "Beam", &summary, false, |ui| body::size(ui, panel, beam));
         }
         fold(ui, "Material", &body::material_summary(scene), false, |ui| body::material(ui, panel));
-        fold(ui, "Mesh", &body::mesh_summary(input), false, |ui| body::mesh(ui, panel));
+        fold(ui, "Mesh", &body::mesh_summary(session), false, |ui| body::mesh(ui, panel));
         if !scene.sections.is_empty() {
             fold(ui, "Sections", &scene.sections.len().to_string(), true, |ui| sections::show(ui, panel));
         }
         fold(ui, "View", &view::summary(panel.view, scene), false, |ui| view::options(ui, panel));
         fold(ui, "File", tr("open, save, picture"), false, |ui| view::keep(ui, panel));
-        if let Some(errors) = errors {
-            fold(ui, "Details", &result::summary(input), false, |ui| result::show(ui, input, errors));
+        if has_result {
+            fold(ui, "Details", &result::summary(session), false, |ui| result::show(ui, session));
         }
     });
 }
@@ -151,12 +142,14 @@ fn fold(ui: &mut Ui, title: &str, summary: &str, open: bool, contents: impl FnOn
 }
 
 /// Input of the panel in a frame, its state, and the actions that it requests.
-struct Panel<'a> {
-    input: &'a Readout<'a>,
-    scene: &'a Scene,
-    state: &'a mut PanelState,
-    view: &'a mut ViewOptions,
-    actions: &'a mut Vec<Action>,
+pub(super) struct Panel<'a> {
+    pub session: &'a Session,
+    pub scene: &'a Scene,
+    /// Range of the displayed field's values in the drawn state.
+    pub values: [f64; 2],
+    pub state: &'a mut PanelState,
+    pub view: &'a mut ViewOptions,
+    pub actions: &'a mut Vec<Action>,
 }
 
 impl Panel<'_> {
@@ -178,7 +171,7 @@ impl Panel<'_> {
         set: impl FnOnce(&mut Scene, f64),
     ) {
         let Some(value) = get(self.scene) else { return };
-        if let Some(new) = self.number(ui, field, value, get(&self.input.session.document().original)) {
+        if let Some(new) = self.number(ui, field, value, get(&self.session.document().original)) {
             self.edit(field.label, |scene| set(scene, new));
         }
     }
@@ -235,7 +228,7 @@ fn solver(ui: &mut Ui, panel: &mut Panel<'_>) {
     panel.picker(ui, "Method", (method.id, method.about), methods, |scene, method| scene.solver.method = method);
     let elements = scene.elements().map(|element| (element, element.id(), element.entry().about));
     panel.picker(ui, "Element", (element.id, element.about), elements, Scene::set_element);
-    if [scene, &panel.input.session.document().original].iter().any(|scene| scene.solver.accept_after > 0) {
+    if [scene, &panel.session.document().original].iter().any(|scene| scene.solver.accept_after > 0) {
         panel.rows(ui, [ACCEPT_AFTER]);
     }
 }

@@ -48,13 +48,13 @@ pub(super) fn summary(scene: &Scene) -> String {
 }
 
 pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, settings) = (panel.input, &panel.scene.dynamics);
+    let (session, settings) = (panel.session, &panel.scene.dynamics);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
         let tip = tr("Simulated seconds per second: 1 is real time, less is slow motion");
         for (speed, word) in SPEEDS {
-            let chosen = (input.session.playback.clock.speed - speed).abs() < 1e-9;
+            let chosen = (session.playback.clock.speed - speed).abs() < 1e-9;
             if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
                 panel.actions.push(Action::Speed(speed));
             }
@@ -64,7 +64,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));
     panel.picker(ui, "Integrator", (chosen.id, chosen.about), entries, |scene, kind| scene.dynamics.integrator = kind);
     panel.rows(ui, TIME);
-    if let Some(critical) = input.simulation.motion().and_then(crate::simulation::Motion::critical_step) {
+    if let Some(critical) = session.simulation().motion().and_then(crate::simulation::Motion::critical_step) {
         let text = fill!("The critical time step near rest is %{step}.", step = engineering(critical, "s"));
         if settings.time_step <= critical {
             ui.small(text);

@@ -1,6 +1,6 @@
 //! Panel section of the result: status, iterations, errors, certificate, times.
 
-use crate::app::diagnosis::{DRIFT_TIP, Errors, drift, drift_text, error_tip, load_text, rho, stability, state_text};
+use crate::app::diagnosis::{DRIFT_TIP, drift, drift_text, error_tip, errors, load_text, rho, stability, state_text};
 use crate::app::interface::*;
 use crate::app::language::signed_percent;
 use crate::app::panel::supports;
@@ -10,13 +10,13 @@ use crate::study::rho_text;
 /// Width of the names of the rows, points.
 const NAME_WIDTH: f32 = 84.0;
 
-pub(super) fn summary(input: &Readout<'_>) -> String {
-    let moves = input.simulation.motion().is_some();
+pub(super) fn summary(session: &Session) -> String {
+    let moves = session.simulation().motion().is_some();
     tr(if moves { "energy, steps, times" } else { "stability, reactions, times" }).to_owned()
 }
 
-pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
-    let simulation = input.simulation;
+pub(super) fn show(ui: &mut Ui, session: &Session) {
+    let simulation = session.simulation();
     ui.spacing_mut().item_spacing.y = 3.0;
     let mut row = |name: &str, value: String, tip: &str| {
         let (name, tip) = (tr(name), tr(tip));
@@ -28,23 +28,23 @@ pub(super) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors) {
         });
     };
     if let Some(motion) = simulation.motion() {
-        motion_rows(&mut row, input, motion);
+        motion_rows(&mut row, session, motion);
         displacement_rows(&mut row, simulation);
-        frame_row(&mut row, input, ("Step", "Computing time of a time step"));
+        frame_row(&mut row, session, ("Step", "Computing time of a time step"));
     } else {
-        search_rows(&mut row, input, errors);
+        search_rows(&mut row, session);
     }
 }
 
-fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
+fn search_rows(row: &mut ResultRow<'_>, session: &Session) {
     // All values are those of the drawn body.
-    let simulation = input.shown;
+    let simulation = session.drawn();
     let method = simulation.scene().solver.method;
-    if let Some(state) = state_text(input) {
+    if let Some(state) = state_text(session) {
         row("State", state, "State of the body that is drawn");
     }
     let (n, residual) = (simulation.iterations(), format!("{:.2e}", simulation.residual()));
-    let is_fallback = input.session.fallback().is_some();
+    let is_fallback = session.fallback().is_some();
     let text = match is_fallback {
         true => fill!("%{n} to the state that is drawn, residual %{residual}", n, residual),
         false => fill!("%{n} since the last change, residual %{residual}", n, residual),
@@ -53,13 +53,14 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
                out-of-balance force over the sum of the elements' absolute forces";
     row("Iterations", text, tip);
     displacement_rows(row, simulation);
-    let text = errors.own.zip(input.reference.and_then(Reference::first)).map(|(error, reference)| {
-        let whole = engineering(reference.displacement.norm(), "m");
-        let own = percent(reference.own_error_percent);
-        fill!("%{error} ± %{own} of %{whole}", error = percent(error), own, whole)
-    });
-    row("Error", known(text), &error_tip(input.reference, input.reference_failure));
-    quality_rows(row, input);
+    let text =
+        errors(session).own.zip(session.known_reference().and_then(Reference::first)).map(|(error, reference)| {
+            let whole = engineering(reference.displacement.norm(), "m");
+            let own = percent(reference.own_error_percent);
+            fill!("%{error} ± %{own} of %{whole}", error = percent(error), own, whole)
+        });
+    row("Error", known(text), &error_tip(session.known_reference(), session.reference_failure()));
+    quality_rows(row, session);
     let Some(search) = simulation.equilibrium() else { return };
     let (factor, steps) = (search.load_factor(), search.load_steps());
     if steps > 1 || factor != 1.0 {
@@ -74,10 +75,10 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
     row("Equilibrium", tr(word).to_owned(), "Stable if the exact tangent stiffness A + G is positive definite");
     if method == MethodKind::Warped {
         let own = || search.certificate()?.fixed_point_rho;
-        let rho = if is_fallback { own() } else { rho(input) };
+        let rho = if is_fallback { own() } else { rho(session) };
         let text = rho.filter(|_| simulation.status().is_success()).map(|rho| {
             let text = sentence(&said(&rho_text(rho)));
-            let load = load_text(input.shown.scene()).filter(|_| is_fallback);
+            let load = load_text(session.drawn().scene()).filter(|_| is_fallback);
             load.map_or(text.clone(), |load| fill!("At %{load}: %{text}", load, text))
         });
         let tip = "ρ: spectral radius of the warped iteration where the solve ended, the largest |λ| with G v = λ A v";
@@ -98,7 +99,7 @@ fn search_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, errors: &Errors) {
         let tip = joined(error.into_iter().chain([solves, factors]));
         row("Auto", sentence(&said(&auto.decision)), &tip);
     }
-    frame_row(row, input, ("Frame", "Computing time of the iterations of one displayed frame"));
+    frame_row(row, session, ("Frame", "Computing time of the iterations of one displayed frame"));
 }
 
 /// Returns a text, or the sign for an unknown number.
@@ -120,9 +121,9 @@ fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
 }
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.
-fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
-    let quality = input.session.quality();
-    let is_known = input.shown.status().is_success() && quality.is_of(input.shown);
+fn quality_rows(row: &mut ResultRow<'_>, session: &Session) {
+    let quality = session.quality();
+    let is_known = session.drawn().status().is_success() && quality.is_of(session.drawn());
     let error = quality.stress.mesh_error_percent.filter(|_| is_known);
     let text = known(error.map(|error| fill!("%{error} (estimate)", error = percent(error))));
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
@@ -151,16 +152,16 @@ fn quality_rows(row: &mut ResultRow<'_>, input: &Readout<'_>) {
     row("Strain", text, &tip);
 }
 
-fn frame_row(row: &mut ResultRow<'_>, input: &Readout<'_>, (name, what): (&str, &str)) {
-    let unknowns = count(input.simulation.system().dofs() as u64, "unknown");
-    let time = engineering(three_digits(input.session.timings().total().as_secs_f64()), "s");
+fn frame_row(row: &mut ResultRow<'_>, session: &Session, (name, what): (&str, &str)) {
+    let unknowns = count(session.simulation().system().dofs() as u64, "unknown");
+    let time = engineering(three_digits(session.timings().total().as_secs_f64()), "s");
     row(name, joined([time, unknowns]), what);
 }
 
 /// Shows time, real-time factor, steps and energy of a motion.
-fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>) {
-    row("Time", format!("{:.2} s", input.simulation.state().time()), "Simulated time");
-    let clock = &input.session.playback.clock;
+fn motion_rows(row: &mut ResultRow<'_>, session: &Session, motion: Motion<'_>) {
+    row("Time", format!("{:.2} s", session.simulation().state().time()), "Simulated time");
+    let clock = &session.playback.clock;
     let factor = match clock.factor {
         Some(factor) if clock.lags() => fill!("%{factor} of real time: slower than asked", factor = fraction(factor)),
         Some(factor) => fill!("%{factor} of real time", factor = fraction(factor)),
@@ -188,9 +189,9 @@ fn motion_rows(row: &mut ResultRow<'_>, input: &Readout<'_>, motion: Motion<'_>)
     let joules = |value: f64| engineering(value, "J");
     row("Kinetic", joules(ledger.kinetic), "Kinetic energy");
     row("Elastic", joules(ledger.elastic), "Energy stored in the body");
-    let drift = drift(input.simulation);
+    let drift = drift(session.simulation());
     row("Drift", known(drift.map(drift_text)), DRIFT_TIP);
-    if let Some((_, force)) = input.simulation.mouse_spring() {
+    if let Some((_, force)) = session.simulation().mouse_spring() {
         row("Grab", engineering(force.norm(), "N"), "Force of the mouse spring that pulls the body");
     }
 }

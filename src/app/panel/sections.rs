@@ -9,7 +9,7 @@ use crate::study::section_chart;
 
 /// Shows the chosen section: its forces, its place and direction, and buttons that show its stress and remove it.
 pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let (input, scene) = (panel.input, panel.scene);
+    let (session, scene) = (panel.session, panel.scene);
     let last = scene.sections.len().saturating_sub(1);
     let (remembered, before) = panel.state.section.unwrap_or((0, last));
     // A new section is chosen.
@@ -26,22 +26,22 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             }
         });
     }
-    if let Some(state) = state_text(input) {
+    if let Some(state) = state_text(session) {
         ui.weak(state);
     }
-    let forces = match input.shown.section_forces(line) {
-        Ok(section) => section_chart::text_of(&section, input.shown),
+    let forces = match session.drawn().section_forces(line) {
+        Ok(section) => section_chart::text_of(&section, session.drawn()),
         Err(error) => said(&error),
     };
     ui.add(Label::new(forces).wrap()).on_hover_text(tr(
         "Normal force, shear force and bending moment that the part in front of the section exerts on the part behind",
     ));
-    let (low, high) = input.simulation.mesh().bounds();
+    let (low, high) = session.simulation().mesh().bounds();
     let mut row = |field: &NumberField, value: f64, set: &dyn Fn(&mut SectionLine, f64)| {
         let Some(new) = panel.number(ui, field, value, None) else { return };
         let mut moved = line;
         set(&mut moved, new);
-        match input.shown.section_forces(moved) {
+        match session.drawn().section_forces(moved) {
             Ok(_) => panel
                 .edit(field.label, |scene| scene.sections.get_mut(chosen).into_iter().for_each(|line| *line = moved)),
             Err(error) => _ = panel.state.messages.insert(field.label, (&error).into()),
@@ -62,7 +62,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             panel.edit("Sections", |scene| _ = scene.sections.remove(chosen));
         }
         if ui.button(tr("Add a section")).clicked() {
-            panel.edit("Sections", |scene| add_middle_section(scene, input.simulation.system()));
+            panel.edit("Sections", |scene| add_middle_section(scene, session.simulation().system()));
         }
     });
 }

@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, number: usize, support: &
             }
         });
     }
-    let reach = reach(0.1 * panel.input.simulation.system().size());
+    let reach = reach(0.1 * panel.session.simulation().system().size());
     const RIGHT: &str =
         "Prescribed displacement of the support to the right, m. Numbers with a unit can be typed, such as 3 mm.";
     const UP: &str =

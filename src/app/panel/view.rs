@@ -17,7 +17,7 @@ pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
             }
         }
     });
-    let values = panel.input.value_range;
+    let values = panel.values;
     let mut fixed = panel.view.fixed_range.is_some();
     let tip = tr("Keep the ends of the colour map fixed; otherwise they follow the values");
     if ui.checkbox(&mut fixed, tr("Fixed colour range")).on_hover_text(tip).changed() {

@@ -28,7 +28,7 @@ use crate::app::session::undo::{UndoHistory, Version};
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::state::State;
-use crate::study::{SolveFromRest, StudyError, is_unstable};
+use crate::study::{PathSummary, SolveFromRest, StudyError, is_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.
@@ -170,6 +170,19 @@ impl Session {
         facts.failure(&self.present.scene).map(Err).or_else(|| facts.get(&self.present.scene).map(Ok))
     }
 
+    /// Returns the reason why the reference solution could not be computed.
+    pub(crate) fn reference_failure(&self) -> Option<&Sentence> {
+        self.reference()?.err()
+    }
+
+    /// Returns the load path from rest, compared with the state; `None` until it has been computed.
+    pub(crate) fn path(&self) -> Option<PathSummary> {
+        let path = self.facts.path.get(&self.present.scene)?;
+        // Only an equilibrium is the end of a path, or of another one.
+        let is_end = *self.model.simulation.status() == Status::Converged && !self.is_grabbed();
+        is_end.then(|| path.to(self.model.simulation.displacement()))
+    }
+
     /// Returns the reference solution, or the one that follows the load.
     pub(crate) fn known_reference(&self) -> Option<&Reference> {
         self.reference().and_then(Result::ok).or_else(|| self.live().map(|live| &live.reference))
@@ -230,6 +243,11 @@ impl Session {
     /// Returns `true` if everything is at rest and the next iteration changes nothing.
     pub(crate) fn has_ended(&self) -> bool {
         self.model.simulation.is_at_rest()
+    }
+
+    /// Returns `true` if a search has ended without an equilibrium.
+    pub(crate) fn has_failed(&self) -> bool {
+        !self.is_motion() && self.model.simulation.status().failure().is_some()
     }
 
     /// Returns `true` if the scene has unsaved edits.

@@ -76,7 +76,7 @@ impl Lab {
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
                 // A body that has reached its end cannot be paused.
-                if !(is_running && self.readout().ended) {
+                if !(is_running && self.desk.has_ended()) {
                     self.desk.session.set_running(!is_running);
                 }
             }

@@ -58,27 +58,27 @@ impl std::fmt::Debug for Gallery {
 
 impl Gallery {
     /// Shows the button with the scene's name, which opens the gallery.
-    pub(crate) fn show(&mut self, ui: &mut Ui, input: &Readout<'_>, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let window = ui.ctx().content_rect().size();
         let opened = ComboBox::from_id_salt("scene")
-            .selected_text(tr(&input.scene.name))
+            .selected_text(tr(&session.scene().name))
             .width(150.0)
             .height(window.y - 64.0)
             .truncate()
-            .show_ui(ui, |ui| self.entries(ui, input, window.x, actions));
+            .show_ui(ui, |ui| self.entries(ui, session, window.x, actions));
         self.is_open = opened.inner.is_some();
         if !self.is_open {
             self.pictures.clear();
         }
         opened.response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::ComboBox, true, tr("Scene"));
-            info.current_text_value = Some(tr(&input.scene.name).to_owned());
+            info.current_text_value = Some(tr(&session.scene().name).to_owned());
             info
         });
-        opened.response.on_hover_text(tr(&input.scene.about));
+        opened.response.on_hover_text(tr(&session.scene().about));
     }
 
-    fn entries(&mut self, ui: &mut Ui, input: &Readout<'_>, window: f32, actions: &mut Vec<Action>) {
+    fn entries(&mut self, ui: &mut Ui, session: &Session, window: f32, actions: &mut Vec<Action>) {
         /// Width of the margins and the scroll bar, points.
         const BESIDE: f32 = 36.0;
         const GAP: f32 = 6.0;
@@ -113,8 +113,8 @@ impl Gallery {
             for row in group.chunks(COLUMNS) {
                 ui.horizontal(|ui| {
                     for entry in row {
-                        let is_present = entry.0.id == input.session.document().source.name.as_os_str();
-                        let is_edited = is_present && input.session.is_edited();
+                        let is_present = entry.0.id == session.document().source.name.as_os_str();
+                        let is_edited = is_present && session.is_edited();
                         let response = self.entry(ui, &palette, entry, width, (is_present, is_edited));
                         if is_present && !self.is_open && by_key {
                             response.scroll_to_me(Some(Align::Center));

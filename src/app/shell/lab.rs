@@ -53,6 +53,14 @@ impl Desk {
         }
     }
 
+    /// Returns `true` if the calculation or the motion that is shown has ended.
+    pub(super) fn has_ended(&self) -> bool {
+        match self.view.mode {
+            Mode::Compare => !self.compare.goes_on(),
+            _ => self.session.has_ended(),
+        }
+    }
+
     /// Turns the limits to the scene while they are shown, and returns the results that only some views show; `learns_rho` is
     /// `true` if a card of Learn shows ρ.
     pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
@@ -234,32 +242,6 @@ impl Lab {
     pub(super) fn viewport_and_content(&mut self) -> (&mut MainView, Content<'_>) {
         let Self { desk: Desk { session, viewport, view, panel, .. }, learn, aside, .. } = self;
         (viewport, content(session, view, panel, aside.is_some().then_some(learn)))
-    }
-
-    /// Returns the state that bars, panel and cards show.
-    pub(super) fn readout(&self) -> Readout<'_> {
-        let Desk { session, viewport, view, .. } = &self.desk;
-        Readout {
-            session,
-            reference: session.known_reference(),
-            reference_failure: session.reference().and_then(Result::err),
-            // Only an equilibrium is the end of a path, or of another one.
-            path: (session.facts().path.get(session.scene()))
-                .filter(|_| {
-                    let simulation = session.simulation();
-                    *simulation.status() == Status::Converged && simulation.mouse_spring().is_none()
-                })
-                .map(|path| path.to(session.simulation().displacement())),
-            value_range: viewport.view.body.value_range(),
-            scene: session.scene(),
-            simulation: session.simulation(),
-            shown: session.drawn(),
-            ended: match view.mode {
-                Mode::Compare => !self.desk.compare.goes_on(),
-                _ => session.has_ended(),
-            },
-            language: self.settings.language,
-        }
     }
 }
 

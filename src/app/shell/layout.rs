@@ -2,11 +2,11 @@
 
 use egui::{CentralPanel, Panel};
 
-use crate::app::diagnosis::{self, Errors};
+use crate::app::diagnosis;
 use crate::app::interface::*;
 use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
-use crate::app::modes::learn::{self, Learn};
+use crate::app::modes::learn;
 use crate::app::modes::motion_plot;
 use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
@@ -65,10 +65,8 @@ impl Lab {
                 compare.bars(ui, &input);
             }
             Mode::Measure => {
-                let mut measure = std::mem::take(&mut self.desk.measure);
-                let Desk { session, view, .. } = &self.desk;
+                let Desk { session, view, measure, .. } = &mut self.desk;
                 drawer_panel(ui, MEASURE_HEIGHT).show(ui, |ui| measure.show(ui, session, view, &mut actions));
-                self.desk.measure = measure;
             }
         }
         for action in actions {
@@ -123,30 +121,26 @@ impl Lab {
 
     /// Shows the toolbar, the status bar, and the panel if the window is wide enough for it.
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let errors = diagnosis::errors(&self.readout());
         let bar = |ui: &Ui| unfilled(ui).inner_margin(Margin::symmetric(12, 0));
         let top = Panel::top("toolbar")
             .exact_size(toolbar::HEIGHTS[usize::from(self.desk.view.narrow)])
             .resizable(false)
             .frame(bar(ui));
-        let mut gallery = std::mem::take(&mut self.gallery);
-        top.show(ui, |ui| toolbar::show(ui, &self.readout(), &mut gallery, &self.desk.view, actions));
-        self.gallery = gallery;
+        top.show(ui, |ui| self.toolbar(ui, actions));
         // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
         if self.desk.view.mode != Mode::Compare && !(self.aside.is_some() && self.desk.view.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
-            bottom.show(ui, |ui| status_bar::show(ui, &self.readout(), &errors, &self.desk.view, actions));
+            bottom.show(ui, |ui| status_bar::show(ui, &self.desk.session, &self.desk.view, actions));
         }
         if self.desk.view.panel && !self.desk.view.narrow {
             let frame = unfilled(ui).inner_margin(Margin { left: 12, right: 8, top: 8, bottom: 4 });
             let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
-            panel.show(ui, |ui| self.panel(ui, &errors, actions));
+            panel.show(ui, |ui| self.panel(ui, actions));
         }
     }
 
     /// Shows the panel over the body in a narrow window.
     fn sheet(&mut self, ui: &Ui, actions: &mut Vec<Action>) {
-        let errors = diagnosis::errors(&self.readout());
         let rect = self.view_rect();
         let width = PANEL_WIDTH.min(rect.width());
         egui::Area::new(Id::unique("sheet"))
@@ -160,7 +154,7 @@ impl Lab {
                 frame.stroke(Stroke::new(1.0, palette.line)).show(ui, |ui| {
                     ui.set_width((width - 22.0).max(0.0));
                     ui.set_height((rect.height() - 14.0).max(0.0));
-                    self.panel(ui, &errors, actions);
+                    self.panel(ui, actions);
                 });
             });
         if ui.input(|i| i.key_pressed(Key::Escape)) && !ui.ctx().text_edit_focused() {
@@ -168,21 +162,17 @@ impl Lab {
         }
     }
 
-    fn panel(&mut self, ui: &mut Ui, errors: &Errors, actions: &mut Vec<Action>) {
-        // The panel's state is taken out of the desk, because the readout borrows the desk.
-        let mut state = std::mem::take(&mut self.desk.panel);
-        let mut view = self.desk.view.clone();
-        let Desk { session, compare, .. } = &self.desk;
+    fn panel(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Desk { session, viewport, view, panel: state, compare, .. } = &mut self.desk;
+        let (scene, values) = (session.scene(), viewport.view.body.value_range());
         // The body that the panel describes may be in no pane.
-        let is_drawn = view.mode != Mode::Compare || !session.is_motion() && compare.shows(session.scene());
-        panel::show(ui, &self.readout(), is_drawn.then_some(errors), &mut state, &mut view, actions);
-        (self.desk.panel, self.desk.view) = (state, view);
+        let is_drawn = view.mode != Mode::Compare || !session.is_motion() && compare.shows(scene);
+        panel::show(ui, &mut panel::Panel { session, scene, values, state, view, actions }, is_drawn);
     }
 
     /// Shows the plots under the body, if they are open.
     fn plots(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let Some(drawer) = self.desk.view.drawer else { return };
-        let state = diagnosis::state_text(&self.readout());
         let Desk { session, view, sections, .. } = &mut self.desk;
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => {
@@ -190,6 +180,7 @@ impl Lab {
                 if sections.request(shown) {
                     ui.ctx().request_repaint_after(POLL);
                 }
+                let state = diagnosis::state_text(session);
                 sections.show(ui, session.scene(), (shown, state.as_deref()), actions);
             }
             Drawer::Motion => {
@@ -236,15 +227,11 @@ impl Lab {
     }
 
     fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        // The state of the cards is taken out of the lab, because the readout borrows the lab.
-        let mut learn = std::mem::replace(&mut self.learn, Learn::new(0));
-        let shown = self.readout();
         // Escape closes the panel over the body and the explanation first.
         let view = &self.desk.view;
         let is_covered = view.help || view.why || view.narrow && view.sheet;
         let keys = !self.has_dialog() && !is_covered;
-        learn.show(ui, &shown, keys, actions);
-        self.learn = learn;
+        self.learn.show(ui, &self.desk.session, keys, actions);
     }
 
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
@@ -272,11 +259,11 @@ impl Lab {
         let (viewport, content) = self.viewport_and_content();
         viewport.fit_camera(ui, &content);
         let painter = ui.painter_at(rect);
-        let readout = self.readout();
-        let errors = diagnosis::errors(&readout);
+        let session = &self.desk.session;
+        let errors = diagnosis::errors(session);
         // Without bars, the note has the status of a motion that has stopped.
-        let stopped = || Some(diagnosis::status_text(&readout)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
-        let label = diagnosis::state_text(&readout).or_else(|| Some(stopped()?.0));
+        let stopped = || Some(diagnosis::status_text(session)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
+        let label = diagnosis::state_text(session).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
         let note = label.as_deref().map(|note| (note, Palette::new(visuals).text));
         self.desk.viewport.paint(&painter, visuals, &self.content(), errors, note);
@@ -319,7 +306,7 @@ impl Lab {
         let highest = DRAWER_SHARE * ui.available_height();
         Panel::bottom("explanation").resizable(false).frame(frame).show(ui, |ui| {
             ScrollArea::vertical().max_height(highest).auto_shrink([false, true]).show(ui, |ui| {
-                for line in diagnosis::explanation(&self.readout()) {
+                for line in diagnosis::explanation(&self.desk.session) {
                     ui.add(Label::new(spaced(line.into(), palette::BODY)).wrap());
                 }
             });
@@ -328,12 +315,12 @@ impl Lab {
 
     /// Shows the status in a line under the body, with a remedy.
     fn status_line(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let input = self.readout();
+        let session = &self.desk.session;
         let palette = Palette::new(ui.visuals());
         // The other modes have remedies of their own, and the story goes on by itself.
         let offers = matches!(self.desk.view.mode, Mode::Explore | Mode::Measure) && self.story.is_none();
-        let remedy = diagnosis::remedy(&input, &diagnosis::errors(&input)).filter(|_| offers);
-        let (status, bad) = diagnosis::summary(&input, remedy.as_ref());
+        let remedy = diagnosis::remedy(session, &diagnosis::errors(session)).filter(|_| offers);
+        let (status, bad) = diagnosis::summary(session, remedy.as_ref());
         let color = if bad { palette.error } else { palette.text };
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 2));
         Panel::bottom("status line").exact_size(STATUS_LINE).resizable(false).frame(frame).show(ui, |ui| {
@@ -348,9 +335,9 @@ impl Lab {
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // The remedy of a failure says what has failed.
-                    let status = Some((status, color)).filter(|_| remedy.is_none() || !input.has_failed());
+                    let status = Some((status, color)).filter(|_| remedy.is_none() || !session.has_failed());
                     let reason = remedy
-                        .map(|remedy| (remedy.text, if input.has_failed() { palette.error } else { palette.large }));
+                        .map(|remedy| (remedy.text, if session.has_failed() { palette.error } else { palette.large }));
                     for (text, color) in reason.into_iter().chain(status) {
                         ui.add(Label::new(RichText::new(text).color(color)).truncate());
                     }

@@ -3,7 +3,7 @@
 use egui::Galley;
 
 use crate::app::diagnosis::{
-    DRIFT_TIP, Errors, doubt, drift, drift_text, error_color, error_text, error_tip, is_large, is_without_reference,
+    DRIFT_TIP, doubt, drift, drift_text, error_color, error_text, error_tip, errors, is_large, is_without_reference,
     load_text, rho, rho_number,
 };
 use crate::app::interface::*;
@@ -38,20 +38,20 @@ impl BarNumber {
     }
 }
 
-pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &ViewOptions, actions: &mut Vec<Action>) {
+pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: &mut Vec<Action>) {
     let palette = Palette::new(ui.visuals());
     // In a narrow window the numbers have no bars.
     let wide = !view.narrow;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
-        let entries = match input.simulation.motion() {
-            Some(_) => of_motion(&palette, input).into(),
-            None => of_solve(&palette, input, errors),
+        let entries = match session.simulation().motion() {
+            Some(_) => of_motion(&palette, session).into(),
+            None => of_solve(&palette, session),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let drawer = Drawer::of(input.scene);
+            let drawer = Drawer::of(session.scene());
             let open = view.plots() == Some(drawer);
-            let is_offered = view.mode == Mode::Explore || !input.scene.sections.is_empty() || open;
+            let is_offered = view.mode == Mode::Explore || !session.scene().sections.is_empty() || open;
             if is_offered || drawer == Drawer::Motion {
                 let (word, tip) = drawer.text();
                 let (word, tip) = (tr(word), tr(tip));
@@ -78,22 +78,23 @@ pub(crate) fn show(ui: &mut Ui, input: &Readout<'_>, errors: &Errors, view: &Vie
     });
 }
 
-fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarNumber> {
-    let simulation = input.simulation;
-    let solve = input.session.timed_from_rest().filter(|_| simulation.status().is_success());
+fn of_solve(palette: &Palette, session: &Session) -> Vec<BarNumber> {
+    let errors = errors(session);
+    let simulation = session.simulation();
+    let solve = session.timed_from_rest().filter(|_| simulation.status().is_success());
     // While a load is dragged, a longer solve is not repeated.
     let is_last = solve.is_none() && simulation.status().is_success();
-    let shown = if is_last { input.session.last_from_rest() } else { solve };
+    let shown = if is_last { session.last_from_rest() } else { solve };
     let time = shown.filter(|solve| solve.is_solved);
     let seconds = time.map_or(0.0, |time| time.timings.total().as_secs_f64());
-    let rho = rho(input);
-    let sought = input.session.facts().reference.progress().filter(|_| errors.own.is_none());
-    let doubt = doubt(input, errors);
-    let is_without_reference = is_without_reference(input);
+    let rho = rho(session);
+    let sought = session.facts().reference.progress().filter(|_| errors.own.is_none());
+    let doubt = doubt(session, &errors);
+    let is_without_reference = is_without_reference(session);
     let is_doubtful = doubt.is_some();
-    let is_late = input.session.live().is_some_and(|live| live.is_late(input.shown));
+    let is_late = session.live().is_some_and(|live| live.is_late(session.drawn()));
     let color = if is_late { palette.secondary } else { error_color(palette, errors.bound) };
-    let of_reference = error_tip(input.reference, input.reference_failure);
+    let of_reference = error_tip(session.known_reference(), session.reference_failure());
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
     let error = BarNumber {
         word: match (doubt, errors.source) {
@@ -113,7 +114,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
         is_doubtful,
         ..BarNumber::new(
             ERROR,
-            error_text(errors.own, errors.bound, input.session.live().is_some()),
+            error_text(errors.own, errors.bound, session.live().is_some()),
             format!("{of_reference}\n{beside}"),
             color,
         )
@@ -125,7 +126,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     let is_unsolved = solve.is_some_and(|solve| !solve.is_solved);
     let word = if is_unsolved { tr("not reached from rest").into() } else { Cow::default() };
     let mut entries = vec![error, BarNumber { word, ..BarNumber::new("TIME", value, tr(tip), color) }];
-    if input.scene.solver.method == MethodKind::Warped {
+    if session.scene().solver.method == MethodKind::Warped {
         let tip = "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
                    diverges";
         let color = match rho {
@@ -134,7 +135,7 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
             None => palette.secondary,
         };
         entries.push(BarNumber {
-            word: match load_text(input.scene) {
+            word: match load_text(session.scene()) {
                 _ if rho.is_none() => Cow::default(),
                 _ if simulation.status().is_success() => tr("per iteration").into(),
                 // The equilibrium that is sought is not drawn.
@@ -148,26 +149,26 @@ fn of_solve(palette: &Palette, input: &Readout<'_>, errors: &Errors) -> Vec<BarN
     entries
 }
 
-fn of_motion(palette: &Palette, input: &Readout<'_>) -> [BarNumber; 3] {
-    let cost = input.session.timings().total().as_secs_f64();
-    let step = input.scene.dynamics.time_step;
+fn of_motion(palette: &Palette, session: &Session) -> [BarNumber; 3] {
+    let cost = session.timings().total().as_secs_f64();
+    let step = session.scene().dynamics.time_step;
     let tip = fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s"));
     let value = if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() };
     let color = if cost > step { palette.error } else { palette.text };
     let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new("STEP", value, tip, color) };
-    let clock = &input.session.playback.clock;
+    let clock = &session.playback.clock;
     let (word, color) = match clock.lags() {
         true => (tr("slower than asked").into(), palette.error),
         false => (Cow::default(), palette.text),
     };
     let value = match clock.factor {
         Some(factor) => format!("× {}", fraction(factor)),
-        None if input.session.is_running() => UNKNOWN.to_owned(),
+        None if session.is_running() => UNKNOWN.to_owned(),
         None => tr("paused").to_owned(),
     };
     let tip = "Simulated seconds per second; fewer than requested if the machine cannot keep up";
     let speed = BarNumber { word, ..BarNumber::new("SPEED", value, tr(tip), color) };
-    let drift = drift(input.simulation);
+    let drift = drift(session.simulation());
     let color = if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text };
     let value = drift.map_or_else(|| UNKNOWN.to_owned(), drift_text);
     [cost, speed, BarNumber::new("DRIFT", value, tr(DRIFT_TIP), color)]

@@ -2,40 +2,38 @@
 
 use crate::app::interface::*;
 use crate::app::language::Language;
-use crate::app::shell::gallery::Gallery;
+use crate::app::shell::lab::{Desk, Lab};
 use crate::app::view_options::MODES;
 use crate::app::widgets::buttons::{Icon, at_right, icon_button};
 
 /// Height of the toolbar in one row, and in the two rows of a narrow window, points.
 pub(crate) const HEIGHTS: [f32; 2] = [36.0, 68.0];
 
-/// Shows the bar. In a narrow window the modes and the tools of the window have a row of their own, and buttons no words.
-pub(crate) fn show(
-    ui: &mut Ui,
-    input: &Readout<'_>,
-    gallery: &mut Gallery,
-    view: &ViewOptions,
-    actions: &mut Vec<Action>,
-) {
-    let mut of_scene = |ui: &mut Ui, actions: &mut Vec<Action>| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        gallery.show(ui, input, actions);
-        tools(ui, input, !view.narrow, actions);
-    };
-    let of_window = |ui: &mut Ui, actions: &mut Vec<Action>| {
-        modes(ui, view, actions);
-        window_tools(ui, view, input.language, actions);
-    };
-    if view.narrow {
-        ui.add_space(6.0);
-        ui.horizontal(|ui| of_scene(ui, actions));
-        ui.horizontal(|ui| of_window(ui, actions));
-    } else {
-        ui.horizontal_centered(|ui| {
-            of_scene(ui, actions);
-            ui.add(egui::Separator::default().vertical().spacing(10.0));
-            of_window(ui, actions);
-        });
+impl Lab {
+    /// Shows the bar. In a narrow window the modes and the tools of the window have a row of their own, and buttons no words.
+    pub(super) fn toolbar(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let Self { desk, gallery, settings, .. } = self;
+        let view = &desk.view;
+        let mut of_scene = |ui: &mut Ui, actions: &mut Vec<Action>| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            gallery.show(ui, &desk.session, actions);
+            tools(ui, desk, actions);
+        };
+        let of_window = |ui: &mut Ui, actions: &mut Vec<Action>| {
+            modes(ui, view, actions);
+            window_tools(ui, view, settings.language, actions);
+        };
+        if view.narrow {
+            ui.add_space(6.0);
+            ui.horizontal(|ui| of_scene(ui, actions));
+            ui.horizontal(|ui| of_window(ui, actions));
+        } else {
+            ui.horizontal_centered(|ui| {
+                of_scene(ui, actions);
+                ui.add(egui::Separator::default().vertical().spacing(10.0));
+                of_window(ui, actions);
+            });
+        }
     }
 }
 
@@ -67,9 +65,10 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
 }
 
 /// Shows the buttons that run the solution, and those that undo and redo edits; with words where there is room.
-fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>) {
-    let (moves, ended) = (input.simulation.motion().is_some(), input.ended);
-    let run = match (input.session.is_running(), ended) {
+fn tools(ui: &mut Ui, desk: &Desk, actions: &mut Vec<Action>) {
+    let (session, wide, ended) = (&desk.session, !desk.view.narrow, desk.has_ended());
+    let moves = session.is_motion();
+    let run = match (session.is_running(), ended) {
         (true, false) => (Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
         (false, _) => (Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
         (true, true) => (Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
@@ -84,8 +83,8 @@ fn tools(ui: &mut Ui, input: &Readout<'_>, wide: bool, actions: &mut Vec<Action>
         run,
         (Icon::Step, "Step", step, !(moves && ended), Action::Step),
         (Icon::Reset, "Reset", reset, true, Action::Reset),
-        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", input.session.undo.can_undo(), Action::Undo),
-        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", input.session.undo.can_redo(), Action::Redo),
+        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", session.undo.can_undo(), Action::Undo),
+        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", session.undo.can_redo(), Action::Redo),
     ] {
         let word = (wide && matches!(icon, Icon::Play | Icon::Pause | Icon::Step)).then_some(tr(name));
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), word, false));

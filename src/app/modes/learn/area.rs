@@ -9,22 +9,23 @@ use crate::scene::limits::Limit;
 pub(super) const LARGEST_FORCE: f64 = 4e4;
 
 /// Shows the slider of the force, and the growth of the body's area compared with the reference solution.
-pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    force(ui, shown, learn, actions);
+pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
+    force(ui, session, learn, actions);
     ui.add_space(4.0);
-    let method = shown.scene.solver.method;
+    let method = session.scene().solver.method;
     let palette = Palette::new(ui.visuals());
-    let linear = shown.session.linear().filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
-    for (body, method) in [(shown.simulation, method)].into_iter().chain(linear) {
+    let linear = session.linear().filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
+    for (body, method) in [(session.simulation(), method)].into_iter().chain(linear) {
         row(ui, &palette, method.id(), Some(body.area_change()), palette.method(method));
     }
-    let outline = shown.reference.filter(|_| shown.simulation.is_at_rest()).map(|reference| &reference.outline);
+    let outline =
+        session.known_reference().filter(|_| session.simulation().is_at_rest()).map(|reference| &reference.outline);
     let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
-        let rest: f64 = shown.simulation.system().nodal_areas().iter().sum();
+        let rest: f64 = session.simulation().system().nodal_areas().iter().sum();
         lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0
     });
     row(ui, &palette, "reference", exact, palette.exact);
-    let linear = Some(shown.simulation).filter(|_| method == MethodKind::Linear).or(shown.session.linear());
+    let linear = Some(session.simulation()).filter(|_| method == MethodKind::Linear).or(session.linear());
     if let Some(angle) = linear.map(triangle::largest_linear_angle) {
         let text = fill!(
             "largest element: θ = %{angle} rad, drawn as atan θ = %{drawn}°; θ² = %{growth}",
@@ -46,8 +47,8 @@ const SOURCES: &str = "The article: “实时物理模拟之 Warped Stiffness �
                        2004.";
 
 /// Shows the slider for the magnitude of the first force, which keeps its direction.
-fn force(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let scene = shown.scene;
+fn force(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let scene = session.scene();
     let first = scene.loads.iter().enumerate().find_map(|(i, load)| match load {
         Load::Force { force, .. } if force[0].hypot(force[1]) > 0.0 => Some((i, *force)),
         _ => None,

@@ -105,15 +105,15 @@ fn verdict(simulation: &Simulation, _: usize) -> String {
 }
 
 /// Shows the buttons that step, and the lines.
-pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let simulation = shown.simulation;
+pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = session.simulation();
     if !describes(simulation) {
         let text = "These lines are for the method warped with three-node triangles only.";
         return not_triangles(ui, text, learn, actions);
     }
     ui.horizontal_wrapped(|ui| {
         let next = ("Next line", "The next line; the line that solves makes an iteration (N)", true);
-        step_buttons(ui, shown, next, actions);
+        step_buttons(ui, session, next, actions);
         let iterations = count(simulation.iterations(), "iteration");
         ui.add(Label::new(fill!("%{iterations} so far", iterations)).extend());
     });

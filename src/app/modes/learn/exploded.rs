@@ -49,7 +49,7 @@ pub(super) fn paint(painter: &Painter, view: &CardView<'_>, learn: &Learn) {
 }
 
 /// Shows the slider between the two views, and the strain of the selected triangle.
-pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
@@ -59,7 +59,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
         slider.labelled_by(label.id).on_hover_text(tip);
     });
     ui.add_space(6.0);
-    let Some(triangle) = Triangle::of(shown.simulation, learn.picked) else {
+    let Some(triangle) = Triangle::of(session.simulation(), learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let angle = angle_text(triangle.rotation);

@@ -58,8 +58,8 @@ fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke) {
 }
 
 /// Shows F = R S with the numbers of the selected triangle.
-pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let Some(triangle) = Triangle::of(shown.simulation, learn.picked) else {
+pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let Some(triangle) = Triangle::of(session.simulation(), learn.picked) else {
         return not_triangles(ui, NOT_TRIANGLES, learn, actions);
     };
     let palette = Palette::new(ui.visuals());

@@ -14,8 +14,8 @@ const GAP: f32 = 18.0;
 /// Largest number of unknowns of a body whose matrix is drawn.
 const MAX_UNKNOWNS: usize = 96;
 
-pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions: &mut Vec<Action>) {
-    let simulation = shown.simulation;
+pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Action>) {
+    let simulation = session.simulation();
     let triangle = Triangle::of(simulation, learn.picked);
     let stiffness = triangle.and_then(|triangle| Some((triangle, triangle.stiffness(simulation)?)));
     let Some((triangle, stiffness)) = stiffness else {
@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
                 cells(ui, &palette, (scale * SMALL_SIDE, largest, &text), matrix, &local, &|_, _| true);
             });
         }
-        ui.vertical(|ui| whole(ui, shown, &palette, scale * LARGE_SIDE, &triangle));
+        ui.vertical(|ui| whole(ui, session, &palette, scale * LARGE_SIDE, &triangle));
     });
     let (all, free) = (2 * simulation.system().mesh().nodes().len(), simulation.system().dofs());
     let note = fill!(
@@ -53,8 +53,8 @@ pub(super) fn show(ui: &mut Ui, shown: &Readout<'_>, learn: &mut Learn, actions:
 }
 
 /// Shows the matrix of the body before the supports are applied, and the rows and columns that they remove.
-fn whole(ui: &mut Ui, shown: &Readout<'_>, palette: &Palette, side: f32, triangle: &Triangle) {
-    let simulation = shown.simulation;
+fn whole(ui: &mut Ui, session: &Session, palette: &Palette, side: f32, triangle: &Triangle) {
+    let simulation = session.simulation();
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
     ui.label(formula::set("Σ R K_{e} R^{T}", palette.text));

@@ -149,16 +149,16 @@ impl Learn {
     }
 
     /// Shows numbers and controls next to the text.
-    fn show_content(&mut self, ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
+    fn show_content(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         match self.card().content {
-            CardDisplay::Area => area::show(ui, shown, self, actions),
-            CardDisplay::Frames => frames::show(ui, shown, self, actions),
-            CardDisplay::Exploded => exploded::show(ui, shown, self, actions),
-            CardDisplay::Matrices => matrices::show(ui, shown, self, actions),
-            CardDisplay::Code => code::show(ui, shown, self, actions),
-            CardDisplay::Steps => residuals::steps(ui, shown, actions),
-            CardDisplay::Methods => residuals::methods(ui, shown, actions),
-            CardDisplay::Elements => locking::show(ui, shown.scene, actions),
+            CardDisplay::Area => area::show(ui, session, self, actions),
+            CardDisplay::Frames => frames::show(ui, session, self, actions),
+            CardDisplay::Exploded => exploded::show(ui, session, self, actions),
+            CardDisplay::Matrices => matrices::show(ui, session, self, actions),
+            CardDisplay::Code => code::show(ui, session, self, actions),
+            CardDisplay::Steps => residuals::steps(ui, session, actions),
+            CardDisplay::Methods => residuals::methods(ui, session, actions),
+            CardDisplay::Elements => locking::show(ui, session.scene(), actions),
             CardDisplay::ToMeasure => {
                 let tip = "Leave the cards, and measure your own scene (B)";
                 if ui.button(tr("Open Measure")).on_hover_text(tr(tip)).clicked() {
@@ -168,7 +168,7 @@ impl Learn {
         }
     }
 
-    pub(crate) fn show(&mut self, ui: &mut Ui, shown: &Readout<'_>, keys: bool, actions: &mut Vec<Action>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, keys: bool, actions: &mut Vec<Action>) {
         if keys {
             actions.extend(self.keys(ui.ctx()));
         }
@@ -196,7 +196,7 @@ impl Learn {
                 });
             };
             column(left, "words", &mut |ui| text(ui, card));
-            column(right, "drawing", &mut |ui| self.show_content(ui, shown, actions));
+            column(right, "drawing", &mut |ui| self.show_content(ui, session, actions));
         });
     }
 
@@ -255,8 +255,8 @@ impl Learn {
 }
 
 /// Shows the buttons that step (name, tooltip, and `true` if it can), return to rest, and iterate to the end.
-fn step_buttons(ui: &mut Ui, shown: &Readout<'_>, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
-    let goes_on = *shown.simulation.status() == Status::Running && !shown.session.is_running();
+fn step_buttons(ui: &mut Ui, session: &Session, step: (&'static str, &'static str, bool), actions: &mut Vec<Action>) {
+    let goes_on = *session.simulation().status() == Status::Running && !session.is_running();
     for (name, tip, on, action) in [
         (step.0, step.1, step.2, Action::Step),
         ("From rest", "Back to rest (R)", true, Action::Reset),

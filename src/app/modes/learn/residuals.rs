@@ -9,29 +9,29 @@ use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
 use crate::study::figure::Ink;
 
 /// Shows the buttons that iterate, and the residuals.
-pub(super) fn steps(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
+pub(super) fn steps(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let ended = *shown.simulation.status() != Status::Running;
-        step_buttons(ui, shown, ("Step once", "One iteration (N)", !ended), actions);
-        if let Some(ratio) = last_ratio(&shown.session.model.residuals) {
+        let ended = *session.simulation().status() != Status::Running;
+        step_buttons(ui, session, ("Step once", "One iteration (N)", !ended), actions);
+        if let Some(ratio) = last_ratio(&session.model.residuals) {
             let text = fill!("last step: residual × %{ratio}", ratio = rho_number(ratio));
             ui.add(Label::new(text).extend());
         }
     });
-    plot(ui, shown);
+    plot(ui, session);
 }
 
 /// Shows the buttons that choose a method, and the residuals.
-pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action>) {
+pub(super) fn methods(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
-            let chosen = shown.scene.solver.method == method.kind;
+            let chosen = session.scene().solver.method == method.kind;
             let text = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
             if ui.add(option_button(chosen, tr(text))).on_hover_text(tr(method.about)).clicked() && !chosen {
-                actions.push(Action::edit("Method", shown.scene, |scene| scene.solver.method = method.kind));
+                actions.push(Action::edit("Method", session.scene(), |scene| scene.solver.method = method.kind));
             }
         }
-        let simulation = shown.simulation;
+        let simulation = session.simulation();
         let iterations = count(simulation.iterations(), "iteration");
         let text = match simulation.status() {
             Status::Converged => fill!("converged after %{iterations}", iterations),
@@ -40,7 +40,7 @@ pub(super) fn methods(ui: &mut Ui, shown: &Readout<'_>, actions: &mut Vec<Action
         };
         ui.add(Label::new(text).extend());
     });
-    plot(ui, shown);
+    plot(ui, session);
 }
 
 fn last_ratio(residuals: &[f64]) -> Option<f64> {
@@ -49,22 +49,22 @@ fn last_ratio(residuals: &[f64]) -> Option<f64> {
     (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
-fn plot(ui: &mut Ui, shown: &Readout<'_>) {
+fn plot(ui: &mut Ui, session: &Session) {
     /// Smallest number of iterations on the horizontal axis.
     const MIN_ITERATIONS: usize = 12;
     /// Decimal exponent at the top of the vertical axis.
     const HIGHEST: f64 = 1.0;
     const DASHES: plot::Stroke = plot::Stroke { width: 1.8, dashes: &[6.0, 4.0] };
     // The residuals of other methods do not follow it.
-    let is_warped = shown.scene.solver.method == MethodKind::Warped;
-    let rho = shown.session.facts().rho.get(shown.scene).copied().filter(|_| is_warped);
+    let is_warped = session.scene().solver.method == MethodKind::Warped;
+    let rho = session.facts().rho.get(session.scene()).copied().filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let size = [size.x, size.y].map(f64::from);
     let frame = ChartFrame { size, left: 50.0, right: 8.0, top: 6.0, bottom: 20.0, edge: 0.0 };
     let decade = |r: f64| r.clamp(1e-300, 1e300).log10();
-    let asked = decade(shown.scene.solver.tolerance);
-    let residuals = &shown.session.model.residuals;
+    let asked = decade(session.scene().solver.tolerance);
+    let residuals = &session.model.residuals;
     let bottom = residuals.iter().map(|&r| decade(r)).fold(asked, f64::min).max(asked - 6.0) - 0.5;
     let most = residuals.len().max(MIN_ITERATIONS) as f64;
     let x = ChartAxis::linear([0.0, most], frame.across());
@@ -88,7 +88,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
         drawing.line(&[line(0.0), line(most)], Ink::Reference, DASHES);
     }
     let places: Vec<_> = points().map(|(k, r)| place(k, r)).collect();
-    let ink = Ink::Solution(shown.scene.solver.method.id());
+    let ink = Ink::Solution(session.scene().solver.method.id());
     places.iter().for_each(|at| drawing.circle(*at, 3.0, ink, None));
     drawing.line(&places, ink, solid(1.6));
     drawing.clip(None);
@@ -111,7 +111,7 @@ fn plot(ui: &mut Ui, shown: &Readout<'_>) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if is_warped && shown.session.facts().rho.is_pending(shown.scene) {
+    if is_warped && session.facts().rho.is_pending(session.scene()) {
         ui.label(RichText::new(tr("Computing ρ.")).small().weak());
     }
 }
