@@ -61,8 +61,8 @@ impl Lab {
         match action {
             Action::Open(_) | Action::New(_) | Action::OpenFile | Action::Close => self.depart(ctx, action),
             Action::Reload => self.open(ctx, self.desk.session.document().source.clone()),
-            Action::Save => self.save_here(ctx),
-            Action::SaveAs => self.ask_where_to_save(ctx),
+            Action::Save => self.save_here(ctx, None),
+            Action::SaveAs => self.ask_where_to_save(ctx, None),
             Action::Undo if self.desk.session.undo.can_undo() => self.undo(ctx, Edit::Undo),
             Action::Redo if self.desk.session.undo.can_redo() => self.undo(ctx, Edit::Redo),
             Action::Undo | Action::Redo => {}

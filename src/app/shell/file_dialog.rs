@@ -16,6 +16,8 @@ pub(crate) enum Purpose {
 #[derive(Debug)]
 pub(crate) struct FileDialog {
     pub purpose: Purpose,
+    /// Action that waits until the scene has been saved.
+    pub then: Option<Action>,
     folder: PathBuf,
     text: String,
     /// Folders and scene files in the folder, each with `true` for a file.
@@ -27,12 +29,13 @@ pub(crate) struct FileDialog {
 }
 
 impl FileDialog {
-    /// Creates a dialog that starts in the folder of `near`.
-    pub(crate) fn new(purpose: Purpose, near: Option<&Path>, name: &str) -> Self {
+    /// Creates a dialog that starts in the folder of `near`; the action `then` waits for it.
+    pub(crate) fn new(purpose: Purpose, then: Option<Action>, near: Option<&Path>, name: &str) -> Self {
         let folder = near.and_then(Path::parent).filter(|folder| folder.is_dir());
         let folder = std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default();
         let mut dialog = Self {
             purpose,
+            then,
             folder: PathBuf::new(),
             text: name.to_owned(),
             entries: Vec::new(),

@@ -8,7 +8,7 @@ use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::undo::UndoHistory;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
-use crate::app::shell::lab::{Lab, Question, Request};
+use crate::app::shell::lab::{Lab, Request};
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
@@ -28,26 +28,25 @@ impl Lab {
         Ok(())
     }
 
-    /// Saves the scene to a file, shows a message of success, and goes on with the action that waits for it. Returns the
-    /// reason for which it was not saved, without a message.
-    fn save(&mut self, ctx: &Context, path: &Path) -> Result<(), Sentence> {
+    /// Saves the scene to a file, shows a message of success, and goes on with the action `then`. Returns the reason for
+    /// which it was not saved, without a message.
+    fn save(&mut self, ctx: &Context, path: &Path, then: Option<Action>) -> Result<(), Sentence> {
         self.desk.session.save(path)?;
         self.settings.add_recent(path);
         self.say(ctx, fill!("Saved %{file}", file = path.display()));
-        if let Question::Saving(departure) = std::mem::take(&mut self.question) {
-            self.go(ctx, departure);
-        }
+        then.into_iter().for_each(|departure| self.go(ctx, departure));
         Ok(())
     }
 
-    /// Saves the scene to its file. If it has none, or another program has changed it, shows the file dialog.
-    pub(super) fn save_here(&mut self, ctx: &Context) {
+    /// Saves the scene to its file, and goes on with the action `then`. If it has none, or another program has changed it,
+    /// shows the file dialog.
+    pub(super) fn save_here(&mut self, ctx: &Context, then: Option<Action>) {
         let document = self.desk.session.document();
         let has_changed = document.has_changed();
         match document.path().map(Path::to_owned) {
-            Some(path) if !has_changed => self.save_there(ctx, &path),
+            Some(path) if !has_changed => self.save_there(ctx, &path, then),
             path => {
-                self.ask_where_to_save(ctx);
+                self.ask_where_to_save(ctx, then);
                 if let (Some(path), Some(dialog)) = (path, &mut self.dialog) {
                     dialog.refuse(fill!("%{file} has changed on disk.", file = path.display()));
                     self.desk.session.check_file();
@@ -57,15 +56,14 @@ impl Lab {
     }
 
     /// Saves the scene to a file, and shows a message.
-    fn save_there(&mut self, ctx: &Context, path: &Path) {
-        if let Err(reason) = self.save(ctx, path) {
-            self.question = Question::None;
+    fn save_there(&mut self, ctx: &Context, path: &Path, then: Option<Action>) {
+        if let Err(reason) = self.save(ctx, path, then) {
             self.say(ctx, fill!("Not saved: %{reason}", reason = said(&reason)));
         }
     }
 
-    /// Shows the dialog for the name of the file. A web page downloads the scene instead.
-    pub(super) fn ask_where_to_save(&mut self, ctx: &Context) {
+    /// Shows the dialog for the name of the file, and goes on with the action `then`. A web page downloads the scene instead.
+    pub(super) fn ask_where_to_save(&mut self, ctx: &Context, then: Option<Action>) {
         let document = self.desk.session.document();
         let name = document.path().and_then(Path::file_name).and_then(|name| name.to_str());
         let name = name.map_or_else(|| format!("{}.toml", document.source.name.display()), str::to_owned);
@@ -77,9 +75,9 @@ impl Lab {
             false => name,
         };
         if IS_PAGE {
-            return self.save_there(ctx, Path::new(&name));
+            return self.save_there(ctx, Path::new(&name), then);
         }
-        self.dialog = Some(FileDialog::new(Purpose::Save, document.path(), &name));
+        self.dialog = Some(FileDialog::new(Purpose::Save, then, document.path(), &name));
     }
 
     /// Shows the file dialog, and processes its answer.
@@ -90,14 +88,11 @@ impl Lab {
             return;
         };
         let done = match answer {
-            None => {
-                self.question = Question::None;
-                Ok(())
-            }
+            None => Ok(()),
             Some(path) if dialog.purpose == Purpose::Open => {
                 self.try_open(Source { name: path, assignments: Vec::new() })
             }
-            Some(path) => self.save(ctx, &path),
+            Some(path) => self.save(ctx, &path, dialog.then.clone()),
         };
         match done {
             Ok(()) => ctx.request_repaint(),
@@ -127,16 +122,12 @@ impl Lab {
         if !session.is_outdated {
             return;
         }
-        ui.horizontal_wrapped(|ui| {
-            let file = session.document().source.name.display();
-            ui.label(fill!("%{file} has changed on disk.", file));
-            if ui.button(tr("Reload")).clicked() {
-                actions.push(Action::Reload);
-            }
-            if ui.button(tr("Keep this one")).clicked() {
-                session.ignore_file_change();
-            }
-        });
+        let text = fill!("%{file} has changed on disk.", file = session.document().source.name.display());
+        match banner(ui, text.into(), &["Reload", "Keep this one"]) {
+            Some("Reload") => actions.push(Action::Reload),
+            Some(_) => session.ignore_file_change(),
+            None => {}
+        }
     }
 
     /// Copies the scene as TOML, or the address of the web page with the scene in it.
@@ -177,7 +168,7 @@ impl Lab {
 
     /// Returns `true` while a dialog has the keyboard focus.
     pub(crate) fn has_dialog(&self) -> bool {
-        self.dialog.is_some() || matches!(self.question, Question::Unsaved(_))
+        self.dialog.is_some() || self.question.is_some()
     }
 
     /// Opens a scene or closes the window, after a question if edits would be lost. Those of a built-in scene are kept when
@@ -195,7 +186,7 @@ impl Lab {
         }
         // The key that opened the question must not answer it.
         ctx.input_mut(|i| i.events.retain(|event| !matches!(event, Event::Key { pressed: true, .. })));
-        self.question = Question::Unsaved(departure);
+        self.question = Some(departure);
         ctx.request_repaint();
     }
 
@@ -208,7 +199,7 @@ impl Lab {
             }
             Action::OpenFile if IS_PAGE => files::choose(),
             Action::OpenFile => {
-                self.dialog = Some(FileDialog::new(Purpose::Open, self.desk.session.document().path(), ""))
+                self.dialog = Some(FileDialog::new(Purpose::Open, None, self.desk.session.document().path(), ""))
             }
             _ => self.requests.push(Request::Close),
         }
@@ -217,10 +208,7 @@ impl Lab {
 
     /// Shows the question, if there is one, and processes its answer.
     pub(crate) fn show_question(&mut self, ctx: &Context) {
-        let departure = match std::mem::take(&mut self.question) {
-            Question::Unsaved(departure) => departure,
-            other => return self.question = other,
-        };
+        let Some(departure) = self.question.take() else { return };
         let file = self.desk.session.document().path().and_then(Path::file_name);
         let name = file.map_or_else(|| tr(&self.scene().name).to_owned(), |file| file.to_string_lossy().into_owned());
         let title = fill!("Save the changes to “%{scene}”?", scene = name);
@@ -229,11 +217,8 @@ impl Lab {
             _ => "Undo restores discarded changes.",
         };
         match dialog(ctx, &title, tr(text)) {
-            None => self.question = Question::Unsaved(departure),
-            Some("Save") => {
-                self.question = Question::Saving(departure);
-                self.save_here(ctx);
-            }
+            None => self.question = Some(departure),
+            Some("Save") => self.save_here(ctx, Some(departure)),
             Some("Discard") => self.go(ctx, departure),
             Some(_) => {}
         }
@@ -248,28 +233,35 @@ impl Lab {
     pub(super) fn offer_unsaved(&mut self, ui: &mut Ui) {
         let Some(left) = self.offered() else { return };
         let text = fill!("Unsaved changes to “%{scene}” were found.", scene = tr(&left.scene.name));
-        let (mut restore, mut discard) = (false, false);
-        ui.horizontal_wrapped(|ui| {
-            ui.label(text);
-            restore = ui.button(tr("Restore")).clicked();
-            discard = ui.button(tr("Discard")).clicked();
-        });
-        if !(restore || discard) {
-            return;
-        }
-        let Some(left) = self.left.clone() else { return };
-        let loses = self.desk.session.is_edited();
-        if restore && !self.apply(ui.ctx(), Edit::Restore(Box::new(left))) {
-            return;
-        }
-        if restore && !loses {
-            // An undo would go from the restored work, whose copy is removed, to a scene without edits.
-            self.desk.session.undo = UndoHistory::default();
+        let Some(answer) = banner(ui, text.into(), &["Restore", "Discard"]) else { return };
+        if answer == "Restore" {
+            let (loses, edit) = (self.desk.session.is_edited(), Edit::Restore(Box::new(left.clone())));
+            if !self.apply(ui.ctx(), edit) {
+                return;
+            }
+            if !loses {
+                // An undo would go from the restored work, whose copy is removed, to a scene without edits.
+                self.desk.session.undo = UndoHistory::default();
+            }
         }
         self.left = None;
         self.requests.push(Request::DiscardCopy);
         ui.ctx().request_repaint();
     }
+}
+
+/// Shows a text in a row, with answers; returns the one that was clicked.
+pub(super) fn banner(ui: &mut Ui, text: RichText, answers: &[&'static str]) -> Option<&'static str> {
+    let mut clicked = None;
+    ui.horizontal_wrapped(|ui| {
+        ui.label(text);
+        for answer in answers {
+            if ui.button(tr(answer)).clicked() {
+                clicked = Some(*answer);
+            }
+        }
+    });
+    clicked
 }
 
 fn dialog(ctx: &Context, title: &str, text: &str) -> Option<&'static str> {

@@ -94,17 +94,6 @@ pub(super) struct Story {
     pub aside: Option<Box<Desk>>,
 }
 
-/// Question that the user is asked.
-#[derive(Debug, Default)]
-pub(super) enum Question {
-    #[default]
-    None,
-    /// The action would lose unsaved edits.
-    Unsaved(Action),
-    /// "Save" was answered, and the dialog asks for a file.
-    Saving(Action),
-}
-
 /// Complete content of a window.
 #[derive(Debug)]
 pub struct Lab {
@@ -116,7 +105,8 @@ pub struct Lab {
     /// Story of the first start, while it is told.
     pub(super) story: Option<Box<Story>>,
     pub(super) dialog: Option<FileDialog>,
-    pub(super) question: Question,
+    /// Action that would lose unsaved edits, while the user is asked about them.
+    pub(super) question: Option<Action>,
     /// Edits left by a crashed window, while they are offered.
     pub left: Option<Unsaved>,
     /// Requests to the window after this frame.
@@ -144,7 +134,7 @@ impl Lab {
             aside: None,
             story: None,
             dialog: None,
-            question: Question::None,
+            question: None,
             left: None,
             requests: Vec::new(),
             settings: Settings::default(),

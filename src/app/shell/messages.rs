@@ -5,6 +5,7 @@ use egui::Panel;
 use crate::app::interface::*;
 use crate::app::panel::edges;
 use crate::app::session::Notice;
+use crate::app::shell::files::banner;
 use crate::app::shell::lab::Lab;
 use crate::app::viewport::objects;
 
@@ -49,10 +50,8 @@ impl Lab {
         Panel::top("banners").resizable(false).frame(frame).show(ui, |ui| {
             if let Some(message) = self.warnings.get(self.closed_warnings) {
                 let color = ui.visuals().warn_fg_color;
-                ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(color, message);
-                    self.closed_warnings += usize::from(ui.button(tr("Close")).clicked());
-                });
+                let is_closed = banner(ui, RichText::new(message).color(color), &["Close"]).is_some();
+                self.closed_warnings += usize::from(is_closed);
             }
             self.offer_changed_file(ui, actions);
             self.offer_unsaved(ui);
