@@ -19,7 +19,7 @@
 use nalgebra::Vector2;
 
 use super::iteration::ROUNDING;
-use super::path::{Jump, PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
+use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
 use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
@@ -75,11 +75,9 @@ struct LoadSteps {
     reached: f64,
     /// Length of the current load step.
     step: f64,
-    /// The path, and `true` if it goes on where the load steps fail.
+    /// The path, which has no limit point so far, and `true` if it goes on where the load steps fail.
     path: Box<PathFollower>,
     goes_on: bool,
-    /// Critical points of a path that has ended at a limit point, once the state beyond is known.
-    events: Option<PathEvents>,
 }
 
 /// Factor by which load steps grow after a success.
@@ -143,10 +141,8 @@ impl Newton {
             return Verdict::Changed;
         }
         let ContinuationPoint { state: end, factor, .. } = &steps.path.last;
-        // A load step may end a little above a limit point, at its tolerance.
-        let is_beyond = steps.path.limit.is_none() && steps.reached >= *factor;
-        let reached = if is_beyond { steps.reached } else { *factor };
-        if !is_beyond {
+        let reached = steps.reached.max(*factor);
+        if *factor > steps.reached {
             state.copy_from(end);
         }
         self.load_factor = Some(reached);
@@ -213,20 +209,23 @@ impl Newton {
         state.copy_from(&shown.state);
         self.load_factor = Some(shown.factor);
         // Nothing but the path leads to its end where supports move.
-        let is_too_long = !problem.supports().move_the_body() && follower.linearizations() > MAX_PATH_SOLVES;
+        let has_limit = follower.limit.is_some();
+        let may_shorten = !has_limit && !problem.supports().move_the_body() && !self.load_steps_failed;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}
-            PathProgress::Continue if !is_too_long || self.load_steps_failed => {}
+            PathProgress::Continue if !may_shorten || follower.linearizations() <= MAX_PATH_SOLVES => {}
             PathProgress::Reached => {
                 self.phase = NewtonPhase::Finish(follower.take_events());
                 (self.load_factor, self.steps) = (None, 0);
             }
-            // The path is too long, rounding errors keep the follower from any step, or the descent is too slow.
+            // Beyond a limit point full steps lead nowhere.
+            PathProgress::Ended(_) if has_limit => self.end = Some(Reason::NoEquilibrium(follower.last.factor)),
+            // The path is too long, or rounding errors keep the follower from any step.
             PathProgress::Continue | PathProgress::Ended(_) => {
                 state.reset();
                 let (base, path) = (state.clone(), follower.clone());
-                let goes_on = matches!(progress, PathProgress::Continue) && path.limit.is_none();
-                let steps = LoadSteps { base, reached: 0.0, step: SHRINK, path, goes_on, events: None };
+                let goes_on = matches!(progress, PathProgress::Continue);
+                let steps = LoadSteps { base, reached: 0.0, step: SHRINK, path, goes_on };
                 self.phase = NewtonPhase::LoadSteps(Box::new(steps));
                 self.begin_load_step();
             }
@@ -295,8 +294,7 @@ impl Method for Newton {
         match &self.phase {
             NewtonPhase::Direct if self.from_rest => Some(PathEvents::default()),
             NewtonPhase::Finish(events) => Some(events.clone()),
-            NewtonPhase::LoadSteps(steps) => steps.events.clone(),
-            NewtonPhase::Direct | NewtonPhase::Path(_) => None,
+            NewtonPhase::Direct | NewtonPhase::Path(_) | NewtonPhase::LoadSteps(_) => None,
         }
     }
 
@@ -354,10 +352,6 @@ impl Method for Newton {
             if !grows && (is_known || it.factorize().is_ok()) {
                 let NewtonPhase::LoadSteps(steps) = &mut self.phase else { return Verdict::Converged(floor) };
                 if !is_partial {
-                    steps.events = steps.path.limit.clone().map(|limit| {
-                        let jump = Some(Jump::from(&limit, Some(it.state), false));
-                        PathEvents { jump, ..steps.path.take_events() }
-                    });
                     return Verdict::Converged(floor);
                 }
                 steps.base.copy_from(it.state);

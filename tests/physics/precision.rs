@@ -260,6 +260,14 @@ fn the_bound_of_rounding_holds_out_of_balance() {
     }
 }
 
+/// The path goes on beyond a limit point, also after more solves than load steps are tried from.
+#[test]
+fn a_long_path_goes_on_beyond_a_limit_point() {
+    let q4 = slender(ElementKind::Q4, MethodKind::Newton);
+    let case = RestCase { alpha: 1e3, poisson: 0.4999, slenderness: 100.0, aspect: 50.0, ..q4 };
+    assert_eq!(case.solve().unwrap().outcome, Outcome::Certified);
+}
+
 /// The solve reports the bound of its rounding error; one that stops above that bound does not.
 #[test]
 fn a_residual_at_its_rounding_floor_counts_as_converged() {
