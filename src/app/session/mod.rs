@@ -54,7 +54,7 @@ pub(crate) struct Grab {
 
 /// Iterations of the displayed frames.
 #[derive(Debug, Default)]
-pub(crate) struct FrameWork {
+pub struct FrameWork {
     /// Time of iterations after which a frame makes no more.
     pub limit: Duration,
     /// Part of this time that is left in the current frame.
@@ -87,7 +87,7 @@ pub struct Session {
     pub most_unknowns: u64,
     background: Background,
     running: bool,
-    pub(crate) frame: FrameWork,
+    pub frame: FrameWork,
     pub(crate) playback: Playback,
     /// Bodies drawn in place of a search that has found no equilibrium.
     fallback: Fallback,
