@@ -50,10 +50,15 @@ impl Reference {
     /// Computes the reference solution of a scene by a quick search.
     ///
     /// ```
-    /// use warpbeam::{ProbeReference, Reference, ReferenceSource, Scene, Simulation};
+    /// use warpbeam::{MovedPoint, ProbeReference, Reference, ReferenceSource, Scene, Simulation};
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
-    /// let reference: ProbeReference = Reference::of(&scene)?.first().ok_or("no reference")?;
+    /// let reference = Reference::of(&scene)?;
+    /// for MovedPoint { key, distance, .. } in &reference.moved {
+    ///     println!("{key} acts on a node {distance} m away");
+    /// }
+    /// assert!(reference.moved.is_empty(), "the scene names edges, not points");
+    /// let reference: ProbeReference = reference.first().ok_or("no reference")?;
     /// // P L³/(3 E I) = 4 mm, and a little more by shear.
     /// assert!((reference.displacement.y + 0.004).abs() < 0.0001);
     /// assert_eq!(reference.source, ReferenceSource::ExactBeam);
@@ -71,24 +76,8 @@ impl Reference {
     }
 
     /// Computes the reference solution of a scene: of several equilibria the one to which loading from rest leads. With
-    /// `near`, a simulation of the scene on a mesh of its own, that mesh is refined.
-    ///
-    /// ```
-    /// use std::ops::ControlFlow;
-    /// use warpbeam::{Extent, MovedPoint, Observer, Progress, Reference, Scene, Sentence};
-    ///
-    /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -1.0]).probe("tip", "right");
-    /// let observe: Observer<'_> = &|Progress { fraction, now }| {
-    ///     println!("{:.0} % {}", 100.0 * fraction, now.map(Sentence::to_string).unwrap_or_default());
-    ///     ControlFlow::Continue(()) // `Break` cancels
-    /// };
-    /// let reference = Reference::find(&scene, None, Extent::Quick, observe)?;
-    /// for MovedPoint { key, distance, .. } in &reference.moved {
-    ///     println!("{key} acts on a node {distance} m away");
-    /// }
-    /// assert!(reference.moved.is_empty(), "the scene names edges, not points");
-    /// # Ok::<(), warpbeam::StudyError>(())
-    /// ```
+    /// `near`, a simulation of the scene on a mesh of its own, that mesh is refined. The example of [`crate::Study::new`]
+    /// has an observer.
     ///
     /// # Errors
     /// [`StudyError`]: the scene is dynamic or has no probe, its mesh is too fine to be refined, the fine solutions do

@@ -150,8 +150,8 @@ impl LimitPoint {
 struct LoadRange {
     /// First and last load.
     range: [f64; 2],
-    /// Load before the first one; `None` if there is none.
-    before: Option<f64>,
+    /// `true` if no load was tried below.
+    is_first: bool,
     /// `true` if the load next to the last one does not have the property: it is the last one indeed.
     ends: bool,
 }
@@ -198,23 +198,15 @@ impl Strip {
     fn runs(&self, property: Property) -> Vec<LoadRange> {
         /// Ratio of the ends of a range that is more than a crossing.
         const WIDE: f64 = 1.5;
-        let mut runs: Vec<LoadRange> = Vec::new();
-        let mut last: Option<(f64, Option<bool>)> = None;
-        for (factor, answer) in self.answers(property) {
-            let follows = last.is_some_and(|(_, last)| last == Some(true));
-            match (answer, runs.last_mut().filter(|_| follows)) {
-                (Some(true), Some(run)) => run.range[1] = factor,
-                (Some(true), None) => {
-                    runs.push(LoadRange { range: [factor; 2], before: last.map(|(before, _)| before), ends: false });
-                }
-                (Some(false), Some(run)) => run.ends = factor <= FINE * run.range[1],
-                _ => {}
-            }
-            last = Some((factor, answer));
-        }
-        let is_wide = |run: &LoadRange| run.before.is_none() || run.range[1] > WIDE * run.range[0];
-        runs.retain(|run| !matches!(property, Property::Within(_)) || is_wide(run));
-        runs
+        let answers: Vec<(f64, Option<bool>)> = self.answers(property).collect();
+        let rows: Vec<_> = answers.chunk_by(|(_, a), (_, b)| a == b).collect();
+        let runs = rows.iter().enumerate().filter(|(_, row)| row[0].1 == Some(true)).map(|(i, row)| {
+            let [first, last] = [row[0].0, row[row.len() - 1].0];
+            let ends = rows.get(i + 1).is_some_and(|next| next[0].1 == Some(false) && next[0].0 <= FINE * last);
+            LoadRange { range: [first, last], is_first: i == 0, ends }
+        });
+        let is_wide = |run: &LoadRange| run.is_first || run.range[1] > WIDE * run.range[0];
+        runs.filter(|run| !matches!(property, Property::Within(_)) || is_wide(run)).collect()
     }
 
     /// Returns the part of the load up to which the error is at most `percent`: 0 if it is larger at the smallest load, and
@@ -240,7 +232,7 @@ impl Strip {
         let runs = self.runs(Property::Converges);
         let Some(last) = self.points.last().map(|point| point.factor) else { return Vec::new() };
         let starts = std::iter::once(0.0).chain(runs.iter().map(|run| run.range[1]));
-        let ends = runs.iter().map(|run| run.before.map_or(0.0, |_| run.range[0])).chain([last]);
+        let ends = runs.iter().map(|run| if run.is_first { 0.0 } else { run.range[0] }).chain([last]);
         starts.zip(ends).map(|(start, end)| [start, end]).filter(|[start, end]| start < end).collect()
     }
 
@@ -287,11 +279,11 @@ impl Strip {
                 };
             };
             let [from, to] = run.range.map(load);
-            let loads = match (run.before, run.ends) {
-                (None, true) => to.into(),
-                (None, false) => sentence!("at least %{load}", load = to),
-                (Some(_), true) => sentence!("%{from} to %{to}", from, to),
-                (Some(_), false) => sentence!("from %{load}", load = from),
+            let loads = match (run.is_first, run.ends) {
+                (true, true) => to.into(),
+                (true, false) => sentence!("at least %{load}", load = to),
+                (false, true) => sentence!("%{from} to %{to}", from, to),
+                (false, false) => sentence!("from %{load}", load = from),
             };
             if runs.len() > 1 && run.ends { sentence!("%{loads}, not everywhere beyond", loads) } else { loads }
         };
@@ -308,16 +300,16 @@ impl Strip {
         let load = |factor: f64| load_text(axis, factor);
         let first = self.points.first()?;
         let found = [GOOD, USABLE].map(|percent| Some((percent, *self.runs(Property::Within(percent)).first()?)));
-        let is_far = |(_, run): &(f64, LoadRange)| run.before.is_none() && run.range[1] > NEAR * range[0];
+        let is_far = |(_, run): &(f64, LoadRange)| run.is_first && run.range[1] > NEAR * range[0];
         let best = found.iter().copied().flatten().find(is_far).or(found[1]);
         Some(match (best, self.runs(Property::Converges).first()) {
             (Some((limit, run)), _) => {
                 let ([from, to], percent) = (run.range.map(load), number(limit));
-                match (run.before, run.ends) {
-                    (Some(_), _) => sentence!("%{percent} % from %{load}", percent, load = from),
-                    (None, true) => sentence!("%{percent} % to %{load}", percent, load = to),
-                    (None, false) if run.range[1] == range[1] => sentence!("within %{percent} %", percent),
-                    (None, false) => sentence!("%{percent} % to at least %{load}", percent, load = to),
+                match (run.is_first, run.ends) {
+                    (false, _) => sentence!("%{percent} % from %{load}", percent, load = from),
+                    (true, true) => sentence!("%{percent} % to %{load}", percent, load = to),
+                    (true, false) if run.range[1] == range[1] => sentence!("within %{percent} %", percent),
+                    (true, false) => sentence!("%{percent} % to at least %{load}", percent, load = to),
                 }
             }
             (None, None) => sentence!("not at %{load}", load = load(range[0])),
@@ -327,7 +319,7 @@ impl Strip {
             {
                 sentence!("reference \u{b1} %{own}", own = percent(own))
             }
-            (None, Some(LoadRange { range: [_, to], before: None, ends: true })) => match self.setting.stepping {
+            (None, Some(LoadRange { range: [_, to], is_first: true, ends: true })) => match self.setting.stepping {
                 Some(_) => sentence!("finishes to %{load}", load = load(*to)),
                 None => sentence!("converges to %{load}", load = load(*to)),
             },
