@@ -115,7 +115,7 @@ fn on_fine_meshes(
     near: Option<&Simulation>,
     extent: Extent,
     observe: Observer<'_>,
-) -> Result<Reference, StudyError> {
+) -> Result<Reference> {
     let mut scene = prepared(original);
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
     let (mut meshes, moved) = Meshes::of(&mut scene, near, extent)?;
@@ -229,7 +229,7 @@ fn has_fold(scene: &Scene, simulation: &Simulation) -> bool {
 }
 
 /// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.
-fn stands(simulation: &Simulation) -> Result<bool, StudyError> {
+fn stands(simulation: &Simulation) -> Result<bool> {
     let (problem, state) = (simulation.problem(), simulation.state());
     let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
     let mut forces = Forces::new(state.displacement().len());
@@ -254,12 +254,7 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, extent: Exte
 }
 
 /// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
-fn solve(
-    simulation: &mut Simulation,
-    extent: Extent,
-    work: &mut f64,
-    observe: Observer<'_>,
-) -> Result<Status, StudyError> {
+fn solve(simulation: &mut Simulation, extent: Extent, work: &mut f64, observe: Observer<'_>) -> Result<Status> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
     let fraction = (unknowns as f64 / extent.pick(MAX_UNKNOWNS) as f64).min(1.0);
@@ -282,11 +277,7 @@ pub(super) struct Meshes {
 
 impl Meshes {
     /// Returns the coarsest mesh of a scene. Points of the scene without a node are moved to the nearest one.
-    pub(super) fn of(
-        scene: &mut Scene,
-        near: Option<&Simulation>,
-        extent: Extent,
-    ) -> Result<(Self, Vec<MovedPoint>), StudyError> {
+    pub(super) fn of(scene: &mut Scene, near: Option<&Simulation>, extent: Extent) -> Result<(Self, Vec<MovedPoint>)> {
         if let Some(beam) = scene.beam.clone() {
             let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
             let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
@@ -308,7 +299,7 @@ impl Meshes {
     }
 
     /// Returns the current mesh.
-    pub(super) fn mesh(&self) -> Result<Mesh, StudyError> {
+    pub(super) fn mesh(&self) -> Result<Mesh> {
         match &self.arch {
             None => Ok(self.straight.clone()),
             Some(beam) => {

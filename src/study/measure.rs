@@ -98,17 +98,12 @@ impl Study {
 }
 
 /// Returns a study of a scene at rest with its reference solution and no measurements.
-pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Study, StudyError> {
+pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Study> {
     Study::begin(scene, StudyReference::Rest(Reference::find(scene, None, Extent::Quick, observe)?))
 }
 
 /// Measures every method on a mesh. A cancelled measurement leaves the study unchanged.
-pub(super) fn measure(
-    study: &mut Study,
-    scene: &Scene,
-    meshed: &Meshed,
-    observe: Observer<'_>,
-) -> Result<(), StudyError> {
+pub(super) fn measure(study: &mut Study, scene: &Scene, meshed: &Meshed, observe: Observer<'_>) -> Result<()> {
     let Meshed { mesh, system, .. } = meshed;
     let text = mesh_text(mesh.element, mesh.cells);
     let mut measurements = Vec::new();
@@ -147,7 +142,7 @@ pub(super) fn measure(
 }
 
 /// Meshes a scene, and computes the displacements of its first probe on that mesh, m.
-pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed, StudyError> {
+pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed> {
     Meshed::new(scene, mesh, |mut scene, system| {
         scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
         let mut simulation = Simulation::with_system(&scene, system.clone())?;

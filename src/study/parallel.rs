@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
-use super::progress::StudyError;
+use super::progress::{Result, StudyError};
 use crate::progress::{Observer, Progress};
 use crate::sentence::Sentence;
 
@@ -24,8 +24,8 @@ pub fn all<T: Sync, R: Send>(
     observe: Observer<'_>,
     [from, to]: [f64; 2],
     now: &Sentence,
-    work: impl Fn(&T, Observer<'_>) -> Result<R, StudyError> + Sync,
-) -> Result<Vec<R>, StudyError> {
+    work: impl Fn(&T, Observer<'_>) -> Result<R> + Sync,
+) -> Result<Vec<R>> {
     let part = |done: usize| done as f64 / items.len() as f64;
     let results = map(items, work, |done| {
         observe(Progress { fraction: (from + (to - from) * part(done)).min(to), now: Some(now) })

@@ -91,6 +91,9 @@ impl StudyError {
     }
 }
 
+/// Result of a step of a study or search.
+pub(super) type Result<T, E = StudyError> = std::result::Result<T, E>;
+
 /// Extent of a study, or of the search for a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
@@ -110,6 +113,6 @@ impl Extent {
 }
 
 /// Converts [`ControlFlow::Break`] to [`StudyError::Cancelled`].
-pub(super) fn check(flow: ControlFlow<()>) -> Result<(), StudyError> {
+pub(super) fn check(flow: ControlFlow<()>) -> Result<()> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
 }

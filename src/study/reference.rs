@@ -326,7 +326,7 @@ fn probe(displacement: Vector2<f64>, error: f64, source: ReferenceSource) -> Opt
     (own_error_percent <= LARGEST_OWN_ERROR).then_some(ProbeReference { displacement, own_error_percent, source })
 }
 
-pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>, StudyError> {
+pub(super) fn system_of(scene: &Scene) -> Result<Arc<System>> {
     Ok(Arc::new(System::new(scene)?))
 }
 
@@ -337,7 +337,7 @@ pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
 }
 
 /// Returns the displacement of the first probe, m.
-pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>, StudyError> {
+pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>> {
     let probe = simulation.problem().probes().first().ok_or(StudyError::NoProbe)?;
     Ok(probe.mean(simulation.displacement()))
 }

@@ -48,8 +48,8 @@ impl Meshed {
     pub fn new(
         scene: &Scene,
         mesh: Setting,
-        result: impl Fn(Scene, &Arc<System>) -> Result<ProbePath, StudyError>,
-    ) -> Result<Self, StudyError> {
+        result: impl Fn(Scene, &Arc<System>) -> Result<ProbePath>,
+    ) -> Result<Self> {
         let scene = mesh.apply(scene);
         let system = system_of(&scene)?;
         let of = |method| result(scene.clone().with_method(method), &system);
@@ -223,7 +223,7 @@ impl Study {
     pub(crate) const MAX_ITERATIONS: u32 = 20;
 
     /// Returns a study without measurements.
-    pub(super) fn begin(scene: &Scene, reference: StudyReference) -> Result<Self, StudyError> {
+    pub(super) fn begin(scene: &Scene, reference: StudyReference) -> Result<Self> {
         let own_error_percent = match &reference {
             StudyReference::Rest(reference) => reference.first().ok_or(StudyError::NoBound)?.own_error_percent,
             StudyReference::Motion(reference) => reference.error_percent,
@@ -240,8 +240,8 @@ impl Study {
         meshes: &[(M, f64)],
         observe: Observer<'_>,
         partial: &mut dyn FnMut(&Self),
-        mut measure: impl FnMut(&mut Self, M, Observer<'_>) -> Result<(), StudyError>,
-    ) -> Result<Self, StudyError> {
+        mut measure: impl FnMut(&mut Self, M, Observer<'_>) -> Result<()>,
+    ) -> Result<Self> {
         let all: f64 = meshes.iter().map(|(_, weight)| weight).sum();
         let mut done = 0.0;
         for &(mesh, weight) in meshes {

@@ -558,7 +558,7 @@ impl Sweep<'_> {
     }
 
     /// Computes the reference solutions under these parts of the load, and reports the progress between two fractions.
-    fn solve_references(&self, factors: &[f64], shares: [f64; 2], observe: Observer<'_>) -> Result<(), StudyError> {
+    fn solve_references(&self, factors: &[f64], shares: [f64; 2], observe: Observer<'_>) -> Result<()> {
         let now = sentence!("reference solutions");
         parallel::all(factors, observe, shares, &now, |&factor, observe| {
             self.reference(factor, observe)?;
@@ -573,7 +573,7 @@ impl Sweep<'_> {
 
     /// Returns the reference under a part of the load; `None` if there is none, so that the error is not known, or if it is
     /// beyond a load at which the material folds and the reference does not tell good results from others.
-    fn reference(&self, factor: f64, observe: Observer<'_>) -> Result<Option<ProbeReference>, StudyError> {
+    fn reference(&self, factor: f64, observe: Observer<'_>) -> Result<Option<ProbeReference>> {
         if self.is_beyond_folds(factor) {
             return Ok(None);
         }
@@ -608,7 +608,7 @@ impl Sweep<'_> {
         system: &Arc<System>,
         (factor, is_compared): (f64, bool),
         observe: Observer<'_>,
-    ) -> Result<LimitPoint, StudyError> {
+    ) -> Result<LimitPoint> {
         let mut solved = Simulation::with_system(&at(own, factor), system.clone())?;
         check(solved.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
         if !solved.status().is_success() {
@@ -636,9 +636,9 @@ impl Sweep<'_> {
         &self,
         row: usize,
         factors: &[(f64, bool)],
-        solve: &dyn Fn(f64, bool) -> Result<LimitPoint, StudyError>,
+        solve: &dyn Fn(f64, bool) -> Result<LimitPoint>,
         is_sought: &dyn Fn(Property, f64) -> bool,
-    ) -> Result<(), StudyError> {
+    ) -> Result<()> {
         let mut strip = lock(&self.limits).strips[row].clone();
         let report = |strip: &Strip| self.change(|limits| limits.strips[row].clone_from(strip));
         for (i, &(factor, is_compared)) in factors.iter().enumerate() {

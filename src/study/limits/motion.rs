@@ -18,7 +18,7 @@ pub(super) fn limits(
     scene: &Scene,
     observe: Observer<'_>,
     partial: &(dyn Fn(&MethodLimits) + Sync),
-) -> Result<MethodLimits, StudyError> {
+) -> Result<MethodLimits> {
     /// Approximate fraction of the time spent on the reference solution.
     const REFERENCE: f64 = 0.3;
     let motions =
@@ -63,7 +63,7 @@ struct Motions<'a> {
 
 impl<'a> Motions<'a> {
     /// Computes the reference of a quick study of a motion.
-    fn new(scene: &'a Scene, observe: Observer<'_>) -> Result<Self, StudyError> {
+    fn new(scene: &'a Scene, observe: Observer<'_>) -> Result<Self> {
         let reference = MotionReference::new(scene, Extent::Quick, observe)?;
         let (samples, system) = (reference.samples(), system_of(scene)?);
         let steps = Extent::Quick.pick(REFERENCE_STEPS);
@@ -92,7 +92,7 @@ impl<'a> Motions<'a> {
     /// Computes the motion with a time step that is `factor` times the scene's. Only the path with a step of 2ⁿ sampling
     /// intervals has the samples of the reference: its error is the sum of those of the mesh, the time steps and the
     /// reference, as in [`ErrorSplit::bound`](crate::study::ErrorSplit::bound). Of others only convergence is found.
-    fn solve(&self, integrator: IntegratorKind, factor: f64, observe: Observer<'_>) -> Result<LimitPoint, StudyError> {
+    fn solve(&self, integrator: IntegratorKind, factor: f64, observe: Observer<'_>) -> Result<LimitPoint> {
         let run = |samples: Samples, steps: u32, each: &mut dyn FnMut(&Simulation)| {
             let mut scene = self.scene.clone();
             (scene.dynamics.integrator, scene.dynamics.time_step) = (integrator, samples.interval / f64::from(steps));

@@ -43,7 +43,7 @@ pub(super) fn measure(
     extent: Extent,
     meshed: &Meshed,
     observe: Observer<'_>,
-) -> Result<(), StudyError> {
+) -> Result<()> {
     let StudyReference::Motion(reference) = &study.reference else { return Err(StudyError::AtRest) };
     let (Meshed { mesh, system, .. }, samples) = (meshed, reference.samples());
     let of_mesh = mesh.apply(scene);
@@ -78,7 +78,7 @@ fn first_run(
     meshed: &Meshed,
     (setting, steps_of_sample): (Setting, u32),
     observe: Observer<'_>,
-) -> Result<(Measurement, u32), StudyError> {
+) -> Result<(Measurement, u32)> {
     let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
     let steps = u64::from(steps_of_sample) * u64::from(samples.count);
     let is_cut = steps > u64::from(extent.pick(MAX_STEPS));

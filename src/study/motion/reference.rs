@@ -123,7 +123,7 @@ pub(in crate::study) fn fine_path(
     samples: Samples,
     steps: u32,
     observe: Observer<'_>,
-) -> Result<Vec<Vector2<f64>>, StudyError> {
+) -> Result<Vec<Vector2<f64>>> {
     let dynamics = &mut scene.dynamics;
     (dynamics.integrator, dynamics.iterations) = (IntegratorKind::EnergyMomentum, 0);
     dynamics.time_step = samples.interval / f64::from(steps);
@@ -148,7 +148,7 @@ fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[
 }
 
 /// Returns the scene with half as many cells in each direction, and with the fine mesh, each with its equations.
-fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2], StudyError> {
+fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2]> {
     let element = finest_element(scene);
     let fine = reference_cells(scene, element, extent.pick(REFERENCE_MESH));
     let with = |cells| {
@@ -185,7 +185,7 @@ pub(in crate::study) fn path(
     steps: u32,
     observe: Observer<'_>,
     each: &mut dyn FnMut(&Simulation),
-) -> Result<Vec<Vector2<f64>>, StudyError> {
+) -> Result<Vec<Vector2<f64>>> {
     let mut path = Vec::with_capacity(samples.count as usize);
     for _ in 0..samples.count {
         check(observe(Progress::at(0.0)))?;
