@@ -3,7 +3,6 @@
 mod claim;
 mod colors;
 mod convergence;
-mod displacement_map;
 pub mod extremes;
 pub mod figure;
 mod fine;

@@ -333,12 +333,11 @@ impl Strip {
         let all = [Property::Within(GOOD), Property::Within(USABLE), Property::Converges, Property::Law];
         all.into_iter().find_map(|property| {
             let answers: Vec<(f64, Option<bool>)> = self.answers(property).collect();
-            let change = answers.windows(2).find(|pair| {
-                let [(from, before), (to, after)] = [pair[0], pair[1]];
+            let change = answers.array_windows().find(|&&[(from, before), (to, after)]| {
                 let changes = before.zip(after).is_some_and(|(before, after)| before != after);
                 changes && to > FINE * from && is_sought(property, to)
             });
-            change.map(|pair| ((pair[0].0 * pair[1].0).sqrt(), matches!(property, Property::Within(_))))
+            change.map(|[(from, _), (to, _)]| ((from * to).sqrt(), matches!(property, Property::Within(_))))
         })
     }
 
@@ -351,8 +350,7 @@ impl Strip {
         const NARROW: f64 = 1.05;
         let errors = self.points.iter().filter_map(|point| Some((point.factor, point.error_percent?)));
         let errors: Vec<(f64, f64)> = errors.collect();
-        let peaks = errors.windows(3).filter_map(|near| {
-            let [(before, a), (at, peak), (after, b)] = [near[0], near[1], near[2]];
+        let peaks = errors.array_windows().filter_map(|&[(before, a), (at, peak), (after, b)]| {
             let is_close =
                 |limit: f64| (CLOSE * limit..=limit).contains(&peak) && is_sought(Property::Within(limit), after);
             let [from, to] = if at * at > before * after { [before, at] } else { [at, after] };
@@ -681,16 +679,12 @@ fn steep(reference: &[(f64, Option<Vector2<f64>>)]) -> Vec<f64> {
     const FAST: f64 = 2.0;
     /// Number of parts of an interval of loads.
     const PARTS: i32 = 4;
-    let grows_fast = |pair: &&[(f64, Option<Vector2<f64>>)]| {
-        let [(from, a), (to, b)] = [pair[0], pair[1]];
+    let between = |&[(from, a), (to, b)]: &[(f64, Option<Vector2<f64>>); 2]| {
         let ratio = b.zip(a).map_or(1.0, |(b, a)| b.norm() / a.norm());
-        ratio.ln() > FAST * (to / from).ln()
+        let parts = if ratio.ln() > FAST * (to / from).ln() { PARTS } else { 1 };
+        (1..parts).map(move |part| from * (to / from).powf(f64::from(part) / f64::from(PARTS)))
     };
-    let between = |pair: &[(f64, Option<Vector2<f64>>)]| {
-        let [from, to] = [pair[0].0, pair[1].0];
-        (1..PARTS).map(move |part| from * (to / from).powf(f64::from(part) / f64::from(PARTS)))
-    };
-    reference.windows(2).filter(grows_fast).flat_map(between).collect()
+    reference.array_windows().flat_map(between).collect()
 }
 
 /// Returns the part of the load at which the load path from rest buckles or jumps, if it does so in the range.
