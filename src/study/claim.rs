@@ -345,7 +345,7 @@ fn load_percent(factor: f64) -> String {
 
 /// Formats the motion of a moving support and its reaction; a support that only rotates has an angle, rad, and a moment,
 /// N m.
-pub(crate) fn driven_texts([motion, reaction]: [f64; 2], rotates: bool) -> [String; 2] {
+pub fn driven_texts([motion, reaction]: [f64; 2], rotates: bool) -> [String; 2] {
     match rotates {
         true => [engineering(motion.to_degrees(), "°"), engineering(reaction, "N m")],
         false => [engineering(motion, "m"), engineering(reaction, "N")],

@@ -26,9 +26,7 @@ mod timing;
 mod trade;
 
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
-#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
-pub(crate) use claim::driven_texts;
-pub use claim::{Claim, floor_text, rho_text};
+pub use claim::{Claim, driven_texts, floor_text, rho_text};
 pub use colors::color;
 pub use fine::moved_points;
 #[cfg(feature = "app")]
@@ -38,11 +36,7 @@ pub use load_path::{LoadPath, PathEnd, PathFromRest, PathState, PathSummary, sup
 pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Tuning};
-#[cfg(any(feature = "app", all(feature = "cli", not(target_arch = "wasm32"))))]
-pub(crate) use reference::MAX_CERTIFIED;
-#[cfg(feature = "app")]
-pub(crate) use reference::{FOLDS, is_unstable};
-pub use reference::{MovedPoint, ProbeReference, Reference, ReferenceSource};
+pub use reference::{FOLDS, MAX_CERTIFIED, MovedPoint, ProbeReference, Reference, ReferenceSource, is_unstable};
 pub use setting::{Setting, Stepping};
 pub use timing::{SolveFromRest, time_from_rest, times_from_rest};
 pub use trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};

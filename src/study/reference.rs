@@ -172,7 +172,7 @@ impl From<&Reference> for Sentence {
 }
 
 /// Limitation of a reference with [`Reference::folds`].
-pub(crate) const FOLDS: &str = "on finer meshes the material folds at the corner of a support, and the fold may grow with \
+pub const FOLDS: &str = "on finer meshes the material folds at the corner of a support, and the fold may grow with \
                                 each of them: the error of the reference covers half more than that of the first";
 
 /// Largest bound of a reference's own error, percent; with a larger bound there is no reference.
@@ -297,12 +297,12 @@ impl Reference {
 
 /// Largest number of unknowns of solutions that are certified automatically; beyond, certification takes much longer
 /// than the solve or its reference.
-pub(crate) const MAX_CERTIFIED: usize = 100_000;
+pub const MAX_CERTIFIED: usize = 100_000;
 
 /// Returns `true` for an equilibrium whose exact tangent is not positive definite. Such a state has no reference solution,
 /// because a solve on another mesh leads to another equilibrium. One that has not been examined is examined if it is small
 /// and `may_examine`, otherwise it counts as stable.
-pub(crate) fn is_unstable(simulation: &Simulation, may_examine: bool) -> bool {
+pub fn is_unstable(simulation: &Simulation, may_examine: bool) -> bool {
     let examines = may_examine && simulation.system().dofs() <= MAX_CERTIFIED;
     let certificate =
         |search: Equilibrium<'_>| search.certificate().or_else(|| examines.then(|| search.snapshot().certify()));

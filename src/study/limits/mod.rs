@@ -19,8 +19,7 @@ mod motion;
 /// Smallest and largest part of the scene's loads and prescribed displacements.
 pub const RANGE: [f64; 2] = [0.01, 10.0];
 /// Smallest and largest part of the time step of a motion.
-#[cfg(feature = "app")]
-pub(crate) const TIME_STEPS: [f64; 2] = [1.0 / 16.0, 8.0];
+pub const TIME_STEPS: [f64; 2] = [1.0 / 16.0, 8.0];
 /// Loads per decade; at every second one the error is measured too, which takes longest.
 const PER_DECADE: i32 = 12;
 /// Further loads of a strip relative to the critical load of its mesh, near which errors change within a percent of the
