@@ -20,9 +20,6 @@ pub(crate) struct ChartFrame {
 impl ChartFrame {
     /// Frame in a file, with room for a legend on the right.
     pub const FILE: Self = Self { size: [860.0, 560.0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0, edge: 8.0 };
-    /// Frame in the window, which has the title and the legend elsewhere.
-    #[cfg(feature = "app")]
-    pub const WINDOW: Self = Self { size: [0.0; 2], left: 68.0, right: 16.0, top: 8.0, bottom: 40.0, edge: 0.0 };
 
     /// Left and right ends of the horizontal axis.
     pub fn across(&self) -> [f64; 2] {

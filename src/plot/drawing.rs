@@ -1,7 +1,5 @@
 //! Lines, shapes and texts, written as SVG on white paper; the window paints them in the colours of its theme.
 
-use std::fmt::Write as _;
-
 use crate::study::color;
 use crate::study::figure::Ink;
 
@@ -81,11 +79,8 @@ pub struct Drawing {
 
 impl DrawTarget for Drawing {
     fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke) {
-        let line = match *points {
-            [from, to] => {
-                let ([x1, y1], [x2, y2]) = (self.place(from), self.place(to));
-                format!("line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"")
-            }
+        let line = match points.iter().map(|point| self.place(*point)).collect::<Vec<_>>()[..] {
+            [[x1, y1], [x2, y2]] => format!("line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\""),
             _ => format!("polyline points=\"{}\" stroke-linejoin=\"round\"", self.list(points)),
         };
         self.elements.push(format!("<{line}{}/>", stroked(ink, stroke)));
@@ -112,23 +107,18 @@ impl DrawTarget for Drawing {
 
     fn put(&mut self, Text { at, anchor, size, ink, is_upright, text }: Text<'_>) {
         let [x, y] = self.place(at);
-        let mut attributes = if is_upright {
-            format!(" transform=\"translate({x} {y}) rotate(-90)\"")
-        } else {
-            format!(" x=\"{x}\" y=\"{y}\"")
+        let place = match is_upright {
+            true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
+            false => format!(" x=\"{x}\" y=\"{y}\""),
         };
-        attributes += match anchor {
+        let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        if size != Text::SIZE {
-            let _ = write!(attributes, " font-size=\"{size}\"");
-        }
-        if ink != Ink::Text {
-            let _ = write!(attributes, " fill=\"{}\"", hex(ink));
-        }
-        self.elements.push(format!("<text{attributes}>{}</text>", escape(text)));
+        let size = if size == Text::SIZE { String::new() } else { format!(" font-size=\"{size}\"") };
+        let fill = if ink == Ink::Text { String::new() } else { format!(" fill=\"{}\"", hex(ink)) };
+        self.elements.push(format!("<text{place}{anchor}{size}{fill}>{}</text>", escape(text)));
     }
 
     fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>) {
@@ -181,10 +171,7 @@ fn filled(ink: Ink, opacity: f64) -> String {
 
 fn stroked(ink: Ink, Stroke { width, dashes }: Stroke) -> String {
     let dashes: Vec<String> = dashes.iter().map(f64::to_string).collect();
-    let dashes = match &dashes[..] {
-        [] => String::new(),
-        dashes => format!(" stroke-dasharray=\"{}\"", dashes.join(" ")),
-    };
+    let dashes = if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", dashes.join(" ")) };
     format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(ink))
 }
 

@@ -33,13 +33,12 @@ fn units_are_read_to_the_last_digit() {
 }
 
 const WITH_UNITS: &str = include_str!("../data/files/units.toml");
-const PLAIN: &str = include_str!("../data/files/units-plain.toml");
 
 /// A scene with units equals the same scene without units, and is written without units.
 #[test]
 fn scene_files_take_units() {
     let scene = Scene::from_toml(WITH_UNITS).unwrap();
-    assert_eq!(scene, Scene::from_toml(PLAIN).unwrap());
+    assert_eq!(scene, Scene::from_toml(include_str!("../data/files/units-plain.toml")).unwrap());
     assert_eq!(Scene::from_toml(&scene.to_toml().unwrap()).unwrap(), scene);
     assert!(scene.to_toml().unwrap().contains("young = 210000000000.0"));
     // Errors of numbers with units name the line of the file.

@@ -93,11 +93,11 @@ impl DrawTarget for ChartPainter {
     }
 }
 
-/// Takes the rest of the area for a chart; returns its frame and its painter, with the response to clicks.
+/// Takes the rest of the area for a chart without title and legend; returns its response, frame and painter.
 pub(crate) fn area(ui: &mut Ui) -> (Response, ChartFrame, ChartPainter) {
     let response = ui.allocate_response(ui.available_size(), Sense::CLICK);
-    let size = response.rect.size();
-    let frame = ChartFrame { size: [size.x, size.y].map(f64::from), ..ChartFrame::WINDOW };
+    let size = [response.rect.width(), response.rect.height()].map(f64::from);
+    let frame = ChartFrame { size, left: 68.0, right: 16.0, top: 8.0, bottom: 40.0, edge: 0.0 };
     let mut painter = ChartPainter::new(ui, response.rect.min);
     painter.rect(frame.area(), Ink::Paper, 1.0);
     (response, frame, painter)
