@@ -15,42 +15,58 @@ pub(crate) const SMALL: f32 = 12.0;
 /// Size of the numbers in the status bar, points.
 pub(crate) const HEADLINE: f32 = 18.0;
 
-/// Colours of a theme.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Palette {
-    dark: bool,
+/// Declares the colours of a theme, each on dark and on light.
+macro_rules! palette {
+    ($($(#[$about:meta])* $name:ident: $dark:literal, $light:literal;)*) => {
+        /// Colours of a theme.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(crate) struct Palette {
+            dark: bool,
+            $($(#[$about])* pub $name: Color32,)*
+            /// Element sides over the colours of the body, with straight (not premultiplied) alpha.
+            pub wire: [u8; 4],
+        }
+
+        impl Palette {
+            const fn of(dark: bool) -> Self {
+                let wire = if dark { [12, 20, 32, 120] } else { [255, 255, 255, 110] };
+                Self { dark, $($name: rgb(if dark { $dark } else { $light }),)* wire }
+            }
+        }
+    };
+}
+
+palette! {
     /// Background of the body.
-    pub canvas: Color32,
+    canvas: 0x1E2228, 0xF6F7F9;
     /// Background of the panels.
-    pub panel: Color32,
+    panel: 0x262B33, 0xEAEDF1;
     /// Background of buttons; `hovered` is the one under the pointer.
-    pub control: Color32,
-    pub hovered: Color32,
+    control: 0x363D48, 0xD8DDE4;
+    hovered: 0x454E5C, 0xC8CFD9;
     /// Separator lines.
-    pub line: Color32,
-    pub text: Color32,
-    pub secondary: Color32,
+    line: 0x3A414C, 0xC9CFD8;
+    text: 0xE6E9EF, 0x1C2128;
+    secondary: 0xA9B1BD, 0x4A5360;
     /// Selected controls, and the control with the keyboard focus.
-    pub accent: Color32,
+    accent: 0x6CB6FF, 0x0B5CAD;
     /// Background of selected controls.
-    pub chosen: Color32,
-    pub good: Color32,
-    pub warning: Color32,
-    pub error: Color32,
+    chosen: 0x2F4A6B, 0xBFDAF5;
+    good: 0x7CDB9A, 0x0B6B35;
+    warning: 0xF2C14E, 0x7A5000;
+    error: 0xFF8A80, 0xA31B1B;
     /// An error above 5 %, as in How far; `error` is a failure.
-    pub large: Color32,
+    large: 0xFF9F5A, 0x9A3F00;
     /// Background of error messages.
-    pub error_chip: Color32,
+    error_chip: 0x44282C, 0xFBE3E1;
     /// Outline of the reference solution (`exact`), and of the body at rest (`rest`).
-    pub exact: Color32,
-    pub rest: Color32,
-    pub support: Color32,
-    pub load: Color32,
-    pub mouse_spring: Color32,
+    exact: 0x4FD1C5, 0x007D73;
+    rest: 0x6E7784, 0x7E8793;
+    support: 0xB4BBC6, 0x464E5A;
+    load: 0xFF6B61, 0xC0242B;
+    mouse_spring: 0x78DC82, 0x0A7828;
     /// Colour of bodies without values of the field.
-    pub absent: Color32,
-    /// Element sides over the colours of the body, with straight (not premultiplied) alpha.
-    pub wire: [u8; 4],
+    absent: 0x7C8088, 0x7C8088;
 }
 
 const fn rgb(hex: u32) -> Color32 {
@@ -67,36 +83,6 @@ impl Default for Palette {
 }
 
 impl Palette {
-    const fn of(dark: bool) -> Self {
-        const fn color(dark: bool, on_dark: u32, on_light: u32) -> Color32 {
-            rgb(if dark { on_dark } else { on_light })
-        }
-        Self {
-            dark,
-            canvas: color(dark, 0x1E2228, 0xF6F7F9),
-            panel: color(dark, 0x262B33, 0xEAEDF1),
-            control: color(dark, 0x363D48, 0xD8DDE4),
-            hovered: color(dark, 0x454E5C, 0xC8CFD9),
-            line: color(dark, 0x3A414C, 0xC9CFD8),
-            text: color(dark, 0xE6E9EF, 0x1C2128),
-            secondary: color(dark, 0xA9B1BD, 0x4A5360),
-            accent: color(dark, 0x6CB6FF, 0x0B5CAD),
-            chosen: color(dark, 0x2F4A6B, 0xBFDAF5),
-            good: color(dark, 0x7CDB9A, 0x0B6B35),
-            warning: color(dark, 0xF2C14E, 0x7A5000),
-            error: color(dark, 0xFF8A80, 0xA31B1B),
-            large: color(dark, 0xFF9F5A, 0x9A3F00),
-            error_chip: color(dark, 0x44282C, 0xFBE3E1),
-            exact: color(dark, 0x4FD1C5, 0x007D73),
-            rest: color(dark, 0x6E7784, 0x7E8793),
-            support: color(dark, 0xB4BBC6, 0x464E5A),
-            load: color(dark, 0xFF6B61, 0xC0242B),
-            mouse_spring: color(dark, 0x78DC82, 0x0A7828),
-            absent: rgb(0x7C8088),
-            wire: if dark { [12, 20, 32, 120] } else { [255, 255, 255, 110] },
-        }
-    }
-
     /// Returns the palette that matches `visuals`.
     pub(crate) fn new(visuals: &Visuals) -> Self {
         if visuals.dark_mode { DARK } else { LIGHT }
