@@ -57,24 +57,15 @@ impl LoadScale {
         Self { usual, stub: 0.0, opening, straight: STRAIGHT, decade: STRAIGHT * opening * std::f64::consts::LN_10 }
     }
 
-    /// Returns the scale of a slider from 0 to 1 whose upper end is `largest`. The opening value is in the middle
-    /// third.
-    pub(crate) fn slider(usual: f64, largest: f64) -> Self {
-        const OPENING: f64 = 0.4;
+    /// Returns the scale of a slider from 0 to 1 whose upper end is `largest`, or of one from −1 to 1 with the ends
+    /// ∓`largest` if it `is_two_sided`. The opening value is in the middle third of the whole slider.
+    pub(crate) fn slider(usual: f64, largest: f64, is_two_sided: bool) -> Self {
         /// Smallest number of decades of the logarithmic part.
         const MIN_DECADES: f64 = 0.3;
+        let opening = if is_two_sided { 0.3 } else { 0.4 };
         let decades = (largest / (STRAIGHT * usual)).log10().max(MIN_DECADES);
-        let decade = (1.0 - STRAIGHT * OPENING) / decades;
-        Self { usual, stub: 0.0, opening: OPENING, straight: STRAIGHT, decade }
-    }
-
-    /// Returns the scale of a slider from −1 to 1 whose ends are ∓`largest`. The opening value is in the middle third
-    /// of the whole slider.
-    pub(crate) fn two_sided_slider(usual: f64, largest: f64) -> Self {
-        const OPENING: f64 = 0.3;
-        let one_sided = Self::slider(usual, largest);
-        let rest = (1.0 - STRAIGHT * OPENING) / (1.0 - STRAIGHT * one_sided.opening);
-        Self { opening: OPENING, decade: one_sided.decade * rest, ..one_sided }
+        let decade = (1.0 - STRAIGHT * opening) / decades;
+        Self { usual, stub: 0.0, opening, straight: STRAIGHT, decade }
     }
 }
 
@@ -138,12 +129,12 @@ mod tests {
     #[test]
     fn a_slider_ends_at_the_largest_load_with_the_usual_one_in_the_middle_third() {
         for (usual, largest) in [(30e3, 1e6), (1.0, 1e5), (5.0, 10.0), (9.81, 1e3)] {
-            let scale = LoadScale::slider(usual, largest);
+            let scale = LoadScale::slider(usual, largest, false);
             assert!((1.0 / 3.0..2.0 / 3.0).contains(&scale.length(usual)));
             assert!(scale.length(largest) <= 1.0 + 1e-12, "{usual} {largest}");
-            let scale = LoadScale::two_sided_slider(usual, largest);
+            let scale = LoadScale::slider(usual, largest, true);
             assert!(scale.length(usual) < 1.0 / 3.0 && scale.length(largest) <= 1.0 + 1e-12);
         }
-        assert!((LoadScale::slider(30e3, 1e6).length(1e6) - 1.0).abs() < 1e-12);
+        assert!((LoadScale::slider(30e3, 1e6, false).length(1e6) - 1.0).abs() < 1e-12);
     }
 }

@@ -207,10 +207,8 @@ impl NumberField {
                 shown(ui, Slider::new(&mut slid, low..=high).logarithmic(true).smallest_positive(smallest))
             }
             SliderScale::Around(usual) => {
-                let (start, scale) = match low < 0.0 {
-                    true => (-1.0, LoadScale::two_sided_slider(usual, high)),
-                    false => (0.0, LoadScale::slider(usual, high)),
-                };
+                let scale = LoadScale::slider(usual, high, low < 0.0);
+                let start = if low < 0.0 { -1.0 } else { 0.0 };
                 let mut place = scale.length(value.abs()).copysign(value);
                 let response = shown(ui, Slider::new(&mut place, start..=1.0));
                 // Screen readers read the value instead of the position on the slider.
