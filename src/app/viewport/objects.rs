@@ -237,24 +237,22 @@ fn additions(scene: &Scene, system: &System, (at, near): (Vector2<f64>, f64), ed
     let support = support_by_hand(system, held.into(), &[Axis::X, Axis::Y]);
     let held = support.place.clone();
     let force = force_by_hand(scene, system, at.into());
-    let mut entries = [
-        ("Add a force here", edited(scene, |scene| scene.loads.push(force))),
-        ("Hold this point", edited(scene, |scene| scene.supports.push(support))),
-        ("Add a probe here", edited(scene, |scene| add_probe(scene, system, at))),
-        ("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, at)))),
-    ]
-    .map(|(text, edit)| (tr(text).to_owned(), edit))
-    .to_vec();
     // A second support of a point changes nothing.
-    if scene.supports.iter().any(|support| support.place == held && support.fix.len() == 2) {
-        entries.remove(1);
-    }
-    if let Some(edge) = edge {
+    let is_held = scene.supports.iter().any(|support| support.place == held && support.fix.len() == 2);
+    let moment = edge.map(|edge| {
         let [usual, _] = LoadRanges::new(OpeningLoads::of(scene), &scene.material, system).moment;
         let text = fill!("Add a moment on %{edge}", edge = tr(edge));
-        entries.insert(1, (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual)))));
-    }
-    entries
+        (text, edited(scene, |scene| scene.loads.push(Load::moment(edge, usual))))
+    });
+    let entry = |text: &str, edit: Action| Some((tr(text).to_owned(), edit));
+    let entries = [
+        entry("Add a force here", edited(scene, |scene| scene.loads.push(force))),
+        moment,
+        entry("Hold this point", edited(scene, |scene| scene.supports.push(support))).filter(|_| !is_held),
+        entry("Add a probe here", edited(scene, |scene| add_probe(scene, system, at))),
+        entry("Add a section here", edited(scene, |scene| scene.sections.push(normal_section(system, at)))),
+    ];
+    entries.into_iter().flatten().collect()
 }
 
 /// Returns the entries that remove an object at a point near `at`, a support of an edge near it, or a moment on an edge.
