@@ -1,16 +1,10 @@
 //! Diagnosis of a result: its error and the source of the error, its status in words, and edits that would improve it.
 
-use crate::app::action::Action;
-use crate::app::language::sentence;
-use crate::app::prelude::*;
+use crate::app::interface::*;
 use crate::app::session::facts::first_probe;
-use crate::app::session::{Session, object_name};
-use crate::app::widgets::palette::Palette;
-use crate::app::widgets::text::UNKNOWN;
-
+use crate::app::session::object_name;
 use crate::exact_beam::error_percent;
-use crate::format::{self, engineering, number, three_digits, two_digits};
-use crate::scene::{Support, limits};
+use crate::format;
 use crate::stress::strain_warning;
 use crate::study::{Claim, FOLDS, MovedPoint, ProbeReference, moved_points};
 
@@ -172,7 +166,7 @@ fn error_level(error: f64) -> u8 {
 }
 
 /// Returns the colour of an error, percent.
-pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color32 {
+pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> Color32 {
     match error.map(error_level) {
         Some(0) => palette.good,
         Some(1) => palette.warning,
@@ -184,21 +178,21 @@ pub(crate) fn error_color(palette: &Palette, error: Option<f64>) -> egui::Color3
 /// Returns the status as a sentence, and `true` if it reports a failure.
 pub(crate) fn status_text(session: &Session) -> (String, bool) {
     let simulation = session.simulation();
-    let moves = simulation.motion().is_some();
-    match simulation.status() {
-        Status::Running | Status::Finished if !session.is_running() => (tr("Paused").to_owned(), false),
-        // The duration applies to runs without a window; in the window a motion continues.
-        Status::Running | Status::Finished if moves && simulation.is_at_rest() => (tr("At rest").to_owned(), false),
-        Status::Running | Status::Finished if moves => (tr("Running").to_owned(), false),
-        Status::Running | Status::Finished => (tr("Iterating").to_owned(), false),
-        Status::Converged => (tr("Converged").to_owned(), false),
-        Status::Accepted => (tr("Accepted").to_owned(), false),
-        Status::NotConverged(reason) => (fill!("Does not converge: %{reason}.", reason = said(reason)), true),
-        Status::Diverged(reason) => (fill!("Diverged: %{reason}.", reason = said(reason)), true),
+    let word = match simulation.status() {
+        Status::NotConverged(reason) => return (fill!("Does not converge: %{reason}.", reason = said(reason)), true),
+        Status::Diverged(reason) => return (fill!("Diverged: %{reason}.", reason = said(reason)), true),
         Status::Stopped(reason) => {
-            (fill!("Stopped: %{reason}. Showing the last finite state.", reason = said(reason)), true)
+            return (fill!("Stopped: %{reason}. Showing the last finite state.", reason = said(reason)), true);
         }
-    }
+        Status::Converged => "Converged",
+        Status::Accepted => "Accepted",
+        Status::Running | Status::Finished if !session.is_running() => "Paused",
+        Status::Running | Status::Finished if simulation.motion().is_none() => "Iterating",
+        // The duration applies to runs without a window; in the window a motion continues.
+        Status::Running | Status::Finished if simulation.is_at_rest() => "At rest",
+        Status::Running | Status::Finished => "Running",
+    };
+    (tr(word).to_owned(), false)
 }
 
 /// Returns the status in one line, such as `Converged · stable · 21 iterations`, and `true` if it needs attention.
