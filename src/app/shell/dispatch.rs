@@ -101,7 +101,7 @@ impl Lab {
             }
             Action::Fit => {
                 self.desk.viewport.clear_swept();
-                self.desk.viewport.camera.fit();
+                self.desk.viewport.camera.own = None;
                 self.desk.compare.fit();
             }
             // The drawer of the other kind of scene does not exist here.

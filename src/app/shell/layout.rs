@@ -265,8 +265,7 @@ impl Lab {
         let stopped = || Some(diagnosis::status_text(session)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
         let label = diagnosis::state_text(session).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
-        let note = label.as_deref().map(|note| (note, Palette::new(visuals).text));
-        self.desk.viewport.paint(&painter, visuals, &self.content(), errors, note);
+        self.desk.viewport.paint(&painter, visuals, &self.content(), errors, label.as_deref());
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }

@@ -76,7 +76,7 @@ impl Lab {
         view.color_with(setup.field);
         view.fixed_range = None;
         (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
-        viewport.camera.fit();
+        viewport.camera.own = None;
         session.set_running(!setup.waits);
         if setup.waits {
             self.reset();

@@ -171,7 +171,7 @@ impl Lab {
     pub(super) fn end_story(&mut self) {
         let Some(story) = self.story.take() else { return };
         (self.desk.view, self.aside) = (story.view, story.aside);
-        self.desk.viewport.camera.fit();
+        self.desk.viewport.camera.own = None;
         if self.aside.is_some() {
             return self.set_card_up();
         }

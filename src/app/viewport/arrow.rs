@@ -226,22 +226,19 @@ pub(crate) fn is_seen(load: &Load, time: f64) -> bool {
     load.pulse().is_none_or(|pulse| pulse.factor(time) >= SEEN)
 }
 
-/// Returns the arrow that a press at `pointer` grabs at its tip.
-pub(crate) fn at_tip(arrows: &[LoadArrow], pointer: Pos2) -> Option<&LoadArrow> {
-    nearest(arrows, NEAR, |arrow| arrow.tip().distance(pointer))
-}
-
-/// Returns the arrow of a force that a press at `pointer` grabs at its shaft.
-pub(crate) fn at_shaft(arrows: &[LoadArrow], pointer: Pos2) -> Option<&LoadArrow> {
+/// Returns the arrow that a press at `pointer` grabs at its tip, or else, if `takes_shafts`, at the shaft of a force.
+pub(crate) fn under(arrows: &[LoadArrow], pointer: Pos2, takes_shafts: bool) -> Option<&LoadArrow> {
     /// Distance from a shaft within which a press grabs it, points.
-    const NEAR: f32 = 5.0;
-    nearest(arrows, NEAR, |LoadArrow { from, shape, .. }| match *shape {
-        ArrowShape::Straight { vector, .. } => {
+    const NEAR_SHAFT: f32 = 5.0;
+    let from_shaft = |LoadArrow { from, shape, .. }: &LoadArrow| match *shape {
+        ArrowShape::Straight { vector, .. } if takes_shafts => {
             let along = ((pointer - *from).dot(vector) / vector.length_sq()).clamp(0.0, 1.0);
             pointer.distance(*from + along * vector)
         }
-        ArrowShape::Arc => f32::INFINITY,
-    })
+        _ => f32::INFINITY,
+    };
+    let at_tip = nearest(arrows, NEAR, |arrow| arrow.tip().distance(pointer));
+    at_tip.or_else(|| nearest(arrows, NEAR_SHAFT, from_shaft))
 }
 
 /// Returns the item at the smallest distance from the pointer, if it is at most `near`, points.

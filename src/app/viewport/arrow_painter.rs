@@ -45,11 +45,7 @@ impl LoadArrow {
         let painter = labels.painter;
         match self.shape {
             ArrowShape::Straight { vector, .. } => {
-                if is_outline {
-                    paint_outline(painter, self.from, vector, color);
-                } else {
-                    paint_arrow(painter, self.from, vector, color);
-                }
+                paint_arrow(painter, self.from, vector, color, is_outline);
                 if self.is_broken() {
                     paint_break(labels, self.from, vector, color);
                 }
@@ -139,32 +135,21 @@ fn paint_grip(painter: &Painter, at: Pos2, color: Color32, is_hot: bool) {
 /// Length of the head of an arrow, and its half width, points.
 const HEAD: [f32; 2] = [12.0, 5.04];
 
-/// Paints an arrow with the vector `vector` at `from`, and returns its tip.
-pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    let (tip, neck, side) = head(from, vector);
-    painter.line_segment([from, neck], Stroke::new(3.0, color));
-    painter.add(Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
-    tip
-}
-
-/// Paints the outline of an arrow with the vector `vector` at `from`, and returns its tip.
-fn paint_outline(painter: &Painter, from: Pos2, vector: Vec2, color: Color32) -> Pos2 {
-    /// Half width of the shaft as a fraction of that of the head.
+/// Paints an arrow with the vector `vector` at `from`, or its outline, and returns its tip.
+pub(crate) fn paint_arrow(painter: &Painter, from: Pos2, vector: Vec2, color: Color32, is_outline: bool) -> Pos2 {
+    /// Half width of the shaft of an outline as a fraction of that of the head.
     const SHAFT: f32 = 0.45;
-    let (tip, neck, side) = head(from, vector);
-    let shaft = SHAFT * side;
-    let line = [from + shaft, neck + shaft, neck + side, tip, neck - side, neck - shaft, from - shaft];
-    painter.add(Shape::closed_line(line.to_vec(), Stroke::new(1.5, color)));
+    let (tip, direction, [length, width]) = (from + vector, vector.normalized(), HEAD);
+    let (neck, side) = (tip - direction * length, vec2(-direction.y, direction.x) * width);
+    if is_outline {
+        let shaft = SHAFT * side;
+        let line = [from + shaft, neck + shaft, neck + side, tip, neck - side, neck - shaft, from - shaft];
+        painter.add(Shape::closed_line(line.to_vec(), Stroke::new(1.5, color)));
+    } else {
+        painter.line_segment([from, neck], Stroke::new(3.0, color));
+        painter.add(Shape::convex_polygon(vec![tip, neck + side, neck - side], color, Stroke::NONE));
+    }
     tip
-}
-
-/// Returns the tip of an arrow, the middle of the head's base, and the vector from there to a corner.
-fn head(from: Pos2, vector: Vec2) -> (Pos2, Pos2, Vec2) {
-    let direction = vector.normalized();
-    let [length, width] = HEAD;
-    let tip = from + vector;
-    let neck = tip - direction * length;
-    (tip, neck, vec2(-direction.y, direction.x) * width)
 }
 
 #[cfg(test)]

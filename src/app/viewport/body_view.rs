@@ -6,7 +6,8 @@ use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Pointer;
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::{Projection, viewport};
+use crate::app::viewport::projection::Projection;
+use crate::render::Viewport;
 
 /// View of a body in a part of the window.
 #[derive(Debug)]
@@ -28,7 +29,10 @@ impl Default for BodyView {
 impl BodyView {
     /// Returns the input of the render pass, at this number of pixels per point.
     pub(crate) fn view(&self, camera: Camera, wireframe: bool, pixels_per_point: f32) -> View<'_> {
-        View { viewport: viewport(self.rect, pixels_per_point), frame: self.body.frame(wireframe), camera }
+        let place = self.rect * pixels_per_point;
+        let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
+        let size = [0, 1].map(|axis| end[axis].saturating_sub(corner[axis]));
+        View { viewport: Viewport { corner, size }, frame: self.body.frame(wireframe), camera }
     }
 
     pub(crate) fn projection(&self, camera: &CameraController) -> Projection {
@@ -47,15 +51,18 @@ impl BodyView {
         Some(LoadedBody { scene, system, positions, time, direction, opening: session.document().opened })
     }
 
-    /// Returns the displayed field and its value at a material point of a body's mesh.
-    pub(crate) fn field_at(&self, mesh: &Mesh, point: MaterialPoint) -> (Field, Option<f64>) {
-        (self.body.field.field, self.body.field.at(mesh, point))
-    }
-
-    /// Shows the values of a body at a material point, next to a position in the window.
+    /// Shows the value of the displayed field and the displacement of a body at a material point, next to a position in the
+    /// window.
     pub(crate) fn show_value(&self, ui: &Ui, body: &Simulation, point: MaterialPoint, at: Pos2) {
-        if let Some(u) = probe::place(body.mesh(), body.displacement(), point) {
-            probe::paint_hover(ui, &ui.painter_at(self.rect), at, self.field_at(body.mesh(), point), u);
-        }
+        let Some(u) = probe::place(body.mesh(), body.displacement(), point) else { return };
+        let field = self.body.field.field;
+        let (factor, unit) = field.display_unit();
+        let unknown = if unit == "Pa" { "not defined: crushed or inverted here" } else { "unknown" };
+        let value = self.body.field.at(body.mesh(), point).map(|value| engineering(three_digits(factor * value), unit));
+        let value = value.unwrap_or_else(|| tr(unknown).to_owned());
+        let text = format!("{}: {value}\nu = {}", tr(field.name()), probe::metres(u));
+        let (place, visuals) = (at + vec2(16.0, 18.0), ui.visuals());
+        let color = visuals.strong_text_color();
+        boxed_text(&ui.painter_at(self.rect), place, Align2::LEFT_TOP, &text, visuals, color, 320.0);
     }
 }

@@ -46,7 +46,7 @@ pub(crate) enum CameraMove {
 #[derive(Clone, Debug)]
 pub(crate) struct CameraController {
     /// Camera set by the user; `None` means fit to the body.
-    own: Option<Camera>,
+    pub own: Option<Camera>,
     /// Box that the camera fits, m.
     pub whole: Box2,
     /// Box of the body at rest, m.
@@ -78,16 +78,6 @@ impl CameraController {
         }
     }
 
-    /// Returns to the camera that fits the whole body.
-    pub(crate) fn fit(&mut self) {
-        self.own = None;
-    }
-
-    /// Returns `true` if the user has moved the camera.
-    pub(crate) fn is_moved(&self) -> bool {
-        self.own.is_some()
-    }
-
     /// Jumps to `camera` without animation, so that dragging does not lag.
     pub(crate) fn set_camera(&mut self, camera: Camera) {
         self.own = Some(camera);
@@ -100,7 +90,7 @@ impl CameraController {
         match pointer {
             CameraMove::None => {}
             CameraMove::To(camera) => self.set_camera(camera),
-            CameraMove::Fit => self.fit(),
+            CameraMove::Fit => self.own = None,
         }
     }
 
@@ -205,7 +195,7 @@ mod tests {
         controller.set_whole([Vector2::new(0.0, -30.0), Vector2::new(10.0, 0.5)]);
         assert!(!controller.aim(fitted(&controller), Some(0.016)));
         assert_eq!(controller.shown, own);
-        controller.fit();
+        controller.own = None;
         assert!(controller.aim(fitted(&controller), Some(0.016)));
         assert_ne!(controller.shown, own);
     }

@@ -11,7 +11,7 @@ use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController
 use crate::app::viewport::objects;
 use crate::app::viewport::overlay::{self, MainOverlay, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
-use crate::app::viewport::probe::{self, CardChoice, Pinned};
+use crate::app::viewport::probe::{self, CardChoice};
 use crate::app::viewport::projection::Projection;
 use crate::section::{Section, SectionForces};
 use crate::state::largest;
@@ -226,7 +226,7 @@ impl MainView {
     pub(crate) fn misses_body(&self) -> bool {
         let projection = self.projection();
         let is_out = |point: &Vector2<f64>| !self.view.rect.contains(projection.point(*point));
-        self.camera.is_moved() && self.view.body.points.iter().any(is_out)
+        self.camera.own.is_some() && self.view.body.points.iter().any(is_out)
     }
 
     /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
@@ -315,11 +315,11 @@ impl MainView {
         let place = Place::At(objects::rounded(system, state.rest).into());
         // An edit of a large body would solve it again.
         let is_kept = content.session.is_in_background() || scene.probes.iter().any(|probe| probe.place == place);
-        let (pinned, mut is_open) = (Pinned { state: &state, at, is_kept }, true);
-        let choice = (&mut self.card_choice, &mut is_open);
-        let keeps = probe::show_card(painter, ui.visuals(), (self.view.rect, &pinned), choice);
-        self.probe = self.probe.filter(|_| is_open);
-        keeps.then(|| Action::edit(objects::EDIT, scene, |scene| objects::add_probe(scene, system, state.rest)))
+        let (view, choice) = (self.view.rect, &mut self.card_choice);
+        let keeps = probe::show_card(painter, ui.visuals(), view, (&state, at, is_kept), choice);
+        self.probe = self.probe.filter(|_| keeps.is_some());
+        (keeps == Some(true))
+            .then(|| Action::edit(objects::EDIT, scene, |scene| objects::add_probe(scene, system, state.rest)))
     }
 
     /// Fits the camera to the body at rest and in its current state, unless the user has moved it. States that have not
@@ -417,14 +417,14 @@ impl MainView {
         })
     }
 
-    /// Paints the overlays; `note` is a text over the body, with its colour.
+    /// Paints the overlays; `note` is a text over the body.
     pub(crate) fn paint(
         &self,
         painter: &Painter,
         visuals: &Visuals,
         content: &Content<'_>,
         errors: Errors,
-        note: Option<(&str, Color32)>,
+        note: Option<&str>,
     ) {
         let Some(forces) = self.forces(content) else { return };
         let session = content.session;

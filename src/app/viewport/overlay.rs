@@ -1,5 +1,7 @@
 //! Overlays of the body: outlines, supports, load arrows, colour bar, scale bar, and text.
 
+use egui::epaint::RectShape;
+
 use crate::app::diagnosis::{Errors, error_text, load_text};
 use crate::app::interface::*;
 use crate::app::session::history::MotionSample;
@@ -26,8 +28,8 @@ pub(crate) struct Overlay<'a> {
     pub apart: bool,
     /// Drawn outline of the reference solution, m: closed lines.
     pub exact: &'a [Vec<Vector2<f64>>],
-    /// Note about the state, and its colour.
-    pub note: Option<(&'a str, Color32)>,
+    /// Note about the state.
+    pub note: Option<&'a str>,
     /// Content of the view of Explore and Learn; `None` for a pane, which shares line key and colour bar with all panes.
     pub main: Option<MainOverlay<'a>>,
 }
@@ -84,14 +86,14 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
         scale_bar(painter, rect, &overlay.projection.camera, &palette);
         pull(&mut labels, overlay, main);
     }
-    if let Some((note, color)) = overlay.note {
+    if let Some(note) = overlay.note {
         let (below, above, beside) = if overlay.main.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
         let places = [
             (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
             (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
         ];
         let (at, anchor) = beside_body(&labels, overlay, note, &places);
-        labels.add(at, anchor, note, color, rect.width() - beside);
+        labels.add(at, anchor, note, palette.text, rect.width() - beside);
     }
 }
 
@@ -232,7 +234,7 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section
         let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.body.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {
             if force.abs() > least {
-                paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color);
+                paint_arrow(painter, middle, axis * ARROW.copysign(force as f32), color, false);
             }
         }
         if moment.abs() > least * overlay.body.system.size() {
@@ -324,9 +326,8 @@ fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>, main: &MainOverlay<'_>) 
     const PITCH: f32 = 7.0;
     let Some((spring, force)) = main.mouse_spring else { return };
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
-    let mesh = overlay.body.system.mesh();
-    let weights = mesh.weights(spring.point()).unwrap_or_default();
-    let held: Vector2<f64> = weights.iter().map(|&(n, w)| overlay.body.positions[n as usize] * w).sum();
+    let held = probe::place(overlay.body.system.mesh(), overlay.body.positions, spring.point());
+    let held = held.unwrap_or_default();
     let [from, to] = [held, spring.target()].map(|p| overlay.projection.point(p));
     painter.circle_filled(from, 4.5, palette.mouse_spring);
     painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.mouse_spring));
@@ -447,7 +448,7 @@ fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
         // An arrow that points up begins where one that points down ends.
         let vector = direction * WEIGHT.min(overlay.view.rect.height() - TOP - UNDER).max(SHORTEST);
         let from = overlay.view.rect.right_top() + vec2(-64.0, TOP + (-vector.y).max(0.0));
-        let tip = paint_arrow(labels.painter, from, vector, palette.load);
+        let tip = paint_arrow(labels.painter, from, vector, palette.load, false);
         let label = engineering(x.hypot(*y), "m/s²");
         labels.add(tip + vec2(0.0, 6.0), Align2::CENTER_TOP, &label, palette.load, 200.0);
     }
@@ -467,7 +468,7 @@ fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, reactions: &[S
         // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
         let from = if pushes { middle - direction * REACTION } else { middle };
-        let tip = paint_arrow(labels.painter, from, direction * REACTION, palette.support);
+        let tip = paint_arrow(labels.painter, from, direction * REACTION, palette.support, false);
         let tail = if pushes { from } else { tip };
         let (anchor, away) = match (pushes, direction.y > 0.0) {
             (true, true) | (false, false) => (Align2::CENTER_BOTTOM, -6.0),
@@ -499,10 +500,6 @@ fn legend(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) -> Option
         (true, None) => "",
     };
     let title = format!("{}, {symbol}{unit}{raw}{range}", tr(field.name()));
-    let ticks = ticks(low, high, MAX_TICKS).into_iter().filter(|_| has_values).map(|value| {
-        let text = engineering(value / 10f64.powi(power), "");
-        (((value - low) / (high - low)) as f32, text)
-    });
     let font = FontId::proportional(SMALL);
     let corner = rect.right_bottom() - vec2(SIZE.x + 32.0, LEGEND_HEIGHT - 6.0);
     let frame = Rect::from_min_size(corner - vec2(14.0, 5.0), vec2(SIZE.x + 34.0, 56.0));
@@ -513,8 +510,9 @@ fn legend(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) -> Option
     if overlay.wanted.is_some() {
         dim(painter, bar, palette);
     }
-    for (fraction, text) in ticks {
-        let x = bar.left() + bar.width() * fraction;
+    for value in ticks(low, high, MAX_TICKS).into_iter().filter(|_| has_values) {
+        let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
+        let text = engineering(value / 10f64.powi(power), "");
         painter.line_segment([pos2(x, bar.bottom()), pos2(x, bar.bottom() + 4.0)], Stroke::new(1.0, palette.text));
         painter.text(pos2(x, bar.bottom() + 5.0), Align2::CENTER_TOP, text, font.clone(), palette.text);
     }
@@ -562,31 +560,23 @@ fn key(painter: &Painter, overlay: &Overlay<'_>, main: &MainOverlay<'_>, palette
     let indent = |mark: Option<LegendMark>| if mark.is_some() { LegendMark::WIDTH + 6.0 } else { 0.0 };
     // Wrapped into rows if the view is narrow.
     let most = (rect.width() - 32.0).max(1.0);
-    let (mut at, mut widest) = (vec2(0.0, 0.0), 0.0_f32);
-    let placed: Vec<_> = lines
-        .into_iter()
-        .map(|(color, mark, text)| {
-            let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
-            let width = indent(mark) + galley.size().x;
-            if at.x > 0.0 && at.x + width > most {
-                at = vec2(0.0, at.y + ROW);
-            }
-            let place = at;
-            at.x += width + GAP;
-            widest = widest.max(place.x + width);
-            (color, mark, galley, place)
-        })
-        .collect();
-    let corner = rect.left_top() + vec2(16.0, 12.0);
-    let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW));
-    let frame = frame.expand2(vec2(8.0, 4.0));
-    painter.rect_filled(frame, 5.0, palette.canvas.gamma_multiply(0.85));
-    for (color, mark, galley, place) in placed {
-        let left = corner + place + vec2(0.0, 0.5 * ROW);
+    let (corner, mut at, mut widest) = (rect.left_top() + vec2(16.0, 12.0), Vec2::ZERO, 0.0_f32);
+    let background = painter.add(Shape::Noop);
+    for (color, mark, text) in lines {
+        let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
+        let width = indent(mark) + galley.size().x;
+        if at.x > 0.0 && at.x + width > most {
+            at = vec2(0.0, at.y + ROW);
+        }
+        let left = corner + at + vec2(0.0, 0.5 * ROW);
         if let Some(mark) = mark {
             mark.paint(painter, left, color);
         }
         painter.galley(left + vec2(indent(mark), -0.5 * galley.size().y), galley, palette.text);
+        widest = widest.max(at.x + width);
+        at.x += width + GAP;
     }
+    let frame = Rect::from_min_size(corner, vec2(widest, at.y + ROW)).expand2(vec2(8.0, 4.0));
+    painter.set(background, RectShape::filled(frame, 5.0, palette.canvas.gamma_multiply(0.85)));
     Some(frame)
 }

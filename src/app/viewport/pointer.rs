@@ -1,9 +1,9 @@
 //! Interaction of the pointer with the view. A drag of an arrow sets its load, a drag of the base of an
 //! object moves it along the body, a drag of the body grabs it, and a drag of empty space moves the view. The wheel zooms about the pointer.
 
-use egui::{CursorIcon, Modifiers, Pos2, Response, Ui, Vec2};
-use nalgebra::Vector2;
+use egui::{CursorIcon, PointerButton};
 
+use crate::app::interface::*;
 use crate::app::session::Grab;
 use crate::app::viewport::arrow::{self, Drag, LoadArrow};
 use crate::app::viewport::base::{self, Base, PressedBase};
@@ -12,8 +12,6 @@ use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::objects::Object;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::Projection;
-use crate::assembly::System;
-use crate::mesh::{MaterialPoint, Mesh};
 
 /// Target of a press, or of a pointer that is not pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -158,11 +156,6 @@ impl HitTargets<'_> {
     fn offset(&self, point: MaterialPoint, place: Vector2<f64>) -> Option<Vector2<f64>> {
         Some(place - probe::place(self.mesh()?, &self.body.nodes, point)?)
     }
-
-    fn point(&self, place: Vector2<f64>) -> Option<MaterialPoint> {
-        let outline = &self.body.geometry.boundary;
-        self.mesh()?.pick(&self.body.nodes, outline, place, NEAR / self.camera.shown.scale)
-    }
 }
 
 impl Pointer {
@@ -196,38 +189,28 @@ impl Pointer {
         matches!(self.held, Held::Tip(grip) if grip.drag().is_some())
     }
 
-    /// Returns `true` if the body is grabbed.
-    fn grabs(&self) -> bool {
-        matches!(self.held, Held::Body(PressedPoint { grabs: true, .. }))
-    }
-
     /// Processes the pointer over the view.
     pub(crate) fn process(&mut self, ui: &Ui, targets: &HitTargets<'_>) -> Interaction {
         let response = targets.response;
-        let (pressed, origin, down, at, let_go_at, fingers, keys) = ui.input(|i| {
-            let pointer = &i.pointer;
-            let fingers = i.multi_touch().map(|touch| touch.translation_delta);
-            let (pressed, down) = (pointer.primary_pressed(), pointer.primary_down());
-            let let_go_at = i.events.iter().rev().find_map(|event| match event {
-                egui::Event::PointerButton { pos, button: egui::PointerButton::Primary, pressed: false, .. } => {
-                    Some(*pos)
-                }
-                _ => None,
-            });
-            (pressed, pointer.press_origin(), down, pointer.interact_pos(), let_go_at, fingers, i.modifiers)
-        });
-        self.at = at;
+        let released = |event: &Event| match event {
+            Event::PointerButton { pos, button: PointerButton::Primary, pressed: false, .. } => Some(*pos),
+            _ => None,
+        };
+        let (pointer, keys) = ui.input(|i| (i.pointer.clone(), i.modifiers));
+        let (fingers, let_go_at) = ui.input(|i| (i.multi_touch(), i.events.iter().rev().find_map(released)));
+        let (fingers, down) = (fingers.map(|touch| touch.translation_delta), pointer.primary_down());
+        self.at = pointer.interact_pos();
         let mut interaction = Interaction::default();
         // A quick click is pressed and released within one frame. Two fingers move the view and release the target of
         // the first one.
         let is_here = response.is_pointer_button_down_on() || response.clicked();
-        if pressed && is_here && fingers.is_none() {
+        if pointer.primary_pressed() && is_here && fingers.is_none() {
             // The pointer may have moved since the press.
-            let at = origin.or(at);
+            let at = pointer.press_origin().or(self.at);
             self.held = at.map_or(Held::Nothing, |at| Self::take(targets, at));
         }
         // The pointer may also have moved after the release.
-        if let Some(at) = let_go_at.or(at) {
+        if let Some(at) = let_go_at.or(self.at) {
             self.drag(targets, (at, keys), &mut interaction);
         }
         if response.double_clicked() {
@@ -240,7 +223,7 @@ impl Pointer {
             interaction.clicked = self.held.point();
         }
         if !down || fingers.is_some() {
-            interaction.grab.release = self.grabs();
+            interaction.grab.release = matches!(self.held, Held::Body(PressedPoint { grabs: true, .. }));
             // A click may also move by a few points.
             if let (Held::Base(PressedBase { base, dragged: Some(at), .. }), None, false) =
                 (self.held, fingers, response.clicked())
@@ -260,13 +243,14 @@ impl Pointer {
     /// shaft that begins at it.
     fn take(targets: &HitTargets<'_>, at: Pos2) -> Held {
         let base = base::near(targets.bases, at);
-        let of_shaft = || base.is_none().then(|| arrow::at_shaft(targets.arrows, at)).flatten();
-        if let Some(arrow) = arrow::at_tip(targets.arrows, at).or_else(of_shaft) {
+        if let Some(arrow) = arrow::under(targets.arrows, at, base.is_none()) {
             let drag = Drag::default();
             return Held::Tip(Grip { arrow: *arrow, pressed: at, last: at, has_moved: false, drag });
         }
         let place = targets.place(at);
-        let point = targets.point(place);
+        let (nodes, outline) = (&targets.body.nodes, &targets.body.geometry.boundary);
+        let near = NEAR / targets.camera.shown.scale;
+        let point = targets.mesh().and_then(|mesh| mesh.pick(nodes, outline, place, near));
         if let Some(base) = base {
             return Held::Base(PressedBase { base: *base, pressed: at, point, dragged: None });
         }
@@ -339,10 +323,8 @@ impl Pointer {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
             look = CameraMove::To(camera);
         }
-        let is_zoom_gesture = ui.input(|i| {
-            i.events.iter().any(|event| matches!(event, egui::Event::MouseWheel { .. } | egui::Event::Zoom(_)))
-        });
-        if is_zoom_gesture {
+        let is_zoom = |event: &Event| matches!(event, Event::MouseWheel { .. } | Event::Zoom(_));
+        if ui.input(|i| i.events.iter().any(is_zoom)) {
             self.scrolls = response.hover_pos().is_some();
         }
         if let Some(pointer) = response.hover_pos().filter(|_| self.scrolls || fingers.is_some()) {

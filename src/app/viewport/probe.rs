@@ -11,22 +11,7 @@ pub(crate) fn place(mesh: &Mesh, positions: &[Vector2<f64>], point: MaterialPoin
     mesh.weights(point)?.iter().map(|&(n, w)| Some(positions.get(n as usize)? * w)).sum()
 }
 
-/// Formats a value of a field with its unit.
-fn field_text((field, value): (Field, Option<f64>)) -> String {
-    let (factor, unit) = field.display_unit();
-    let unknown = if unit == "Pa" { "not defined: crushed or inverted here" } else { "unknown" };
-    value.map_or_else(|| tr(unknown).to_owned(), |value| engineering(three_digits(factor * value), unit))
-}
-
-/// Paints the value of the field and the displacement next to the pointer.
-pub(crate) fn paint_hover(ui: &Ui, painter: &Painter, at: Pos2, field: (Field, Option<f64>), u: Vector2<f64>) {
-    let text = format!("{}: {}\nu = {}", tr(field.0.name()), field_text(field), metres(u));
-    let visuals = ui.visuals();
-    let place = at + vec2(16.0, 18.0);
-    boxed_text(painter, place, Align2::LEFT_TOP, &text, visuals, visuals.strong_text_color(), 320.0);
-}
-
-fn metres(v: Vector2<f64>) -> String {
+pub(super) fn metres(v: Vector2<f64>) -> String {
     engineering_pair([v.x, v.y].map(three_digits), "m")
 }
 
@@ -132,24 +117,16 @@ fn paint_principal(painter: &Painter, at: Pos2, point: &PointState, color: Color
     }
 }
 
-/// Pinned point.
-pub(crate) struct Pinned<'a> {
-    /// Values at the point.
-    pub state: &'a PointState,
-    /// Position in the window.
-    pub at: Pos2,
-    /// `true` if the scene has a probe there.
-    pub is_kept: bool,
-}
-
-/// Shows the card of a pinned point, which the user can move in the `view` and close; returns `true` if a probe is to be
-/// added to the scene at the point.
+/// Shows the card of a pinned point at a position in the window, which the user can move in the `view`; the scene has a
+/// probe there if it `is_kept`. Returns `true` if a probe is to be added to the scene at the point, and `None` if the user
+/// has closed the card.
 pub(crate) fn show_card(
     painter: &Painter,
     visuals: &Visuals,
-    (view, pinned): (Rect, &Pinned<'_>),
-    (choice, is_open): (&mut CardChoice, &mut bool),
-) -> bool {
+    view: Rect,
+    (state, at, is_kept): (&PointState, Pos2, bool),
+    choice: &mut CardChoice,
+) -> Option<bool> {
     /// Room for the line key above a card, space below it, and space between card and point, points.
     const KEY: f32 = 44.0;
     const BESIDE: f32 = 20.0;
@@ -157,7 +134,6 @@ pub(crate) fn show_card(
     /// Usual size of a card, and height of a folded one, points.
     const SIZE: Vec2 = vec2(284.0, 288.0);
     const FOLDED: f32 = 36.0;
-    let Pinned { state, at, .. } = *pinned;
     let color = visuals.strong_text_color();
     painter.circle(at, 4.5, Color32::TRANSPARENT, Stroke::new(2.0, color));
     painter.circle_filled(at, 1.5, color);
@@ -173,16 +149,19 @@ pub(crate) fn show_card(
     let y = if is_low { view.top() + KEY } else { view.bottom() - BELOW - height };
     let title = fill!("Point %{place}", place = metres(state.rest));
     let id = egui::Id::unique(("card", &title, has_room));
-    let window = Window::new(RichText::new(title).size(BODY)).id(id).open(is_open).resizable(false).default_size(SIZE);
+    let mut is_open = true;
+    let title = RichText::new(title).size(BODY);
+    let window = Window::new(title).id(id).open(&mut is_open).resizable(false).default_size(SIZE);
     let window = window.default_open(has_room).default_pos(pos2(x, y)).constrain_to(view);
-    let Some(shown) = window.show(painter.ctx(), |ui| card_content(ui, pinned, choice)) else { return false };
-    painter.line_segment([at, shown.response.rect.clamp(at)], Stroke::new(1.2, color));
-    shown.inner == Some(true)
+    let shown = window.show(painter.ctx(), |ui| card_content(ui, state, is_kept, choice));
+    if let Some(shown) = &shown {
+        painter.line_segment([at, shown.response.rect.clamp(at)], Stroke::new(1.2, color));
+    }
+    is_open.then(|| shown.and_then(|shown| shown.inner) == Some(true))
 }
 
 /// Shows the values of a pinned point, and returns `true` if a probe is to be added there.
-fn card_content(ui: &mut Ui, pinned: &Pinned<'_>, choice: &mut CardChoice) -> bool {
-    let point = pinned.state;
+fn card_content(ui: &mut Ui, point: &PointState, is_kept: bool, choice: &mut CardChoice) -> bool {
     ui.spacing_mut().item_spacing.y = 3.0;
     let (kind, tip) = match point.values {
         PointValues::Recovered => (
@@ -212,17 +191,23 @@ fn card_content(ui: &mut Ui, pinned: &Pinned<'_>, choice: &mut CardChoice) -> bo
             }
         });
     });
-    let matrices = matrices_of(point);
+    let matrices = [
+        ("F", point.gradient, "Deformation gradient ∂x/∂X"),
+        ("R", point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
+        ("S", point.stretch, "Stretch of the polar decomposition F = R S"),
+    ];
+    // Linear theory has neither R nor S.
+    let matrices = if point.is_linear { &matrices[..1] } else { &matrices };
     let keeps = ui.horizontal(|ui| {
         let tip = "Adds a probe here: it is saved with the scene, and has a row in Details and in Compare";
-        let keeps = !pinned.is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked();
+        let keeps = !is_kept && ui.button(tr("Keep as probe")).on_hover_text(tr(tip)).clicked();
         let names = matrices.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
         ui.toggle_value(&mut choice.shows_matrices, names).on_hover_text(tr("Shows these matrices"));
         keeps
     });
     if choice.shows_matrices {
         Grid::new("probe matrices").spacing([12.0, 3.0]).show(ui, |ui| {
-            for (name, matrix, tip) in &matrices {
+            for (name, matrix, tip) in matrices {
                 ui.label(RichText::new(*name).weak()).on_hover_text(tr(tip));
                 ui.label(RichText::new(matrix_rows(matrix)).monospace().size(12.0)).on_hover_text(tr(tip));
                 ui.end_row();
@@ -230,16 +215,4 @@ fn card_content(ui: &mut Ui, pinned: &Pinned<'_>, choice: &mut CardChoice) -> bo
         });
     }
     keeps.inner
-}
-
-/// Returns the matrices of a point, with their names and tooltips.
-fn matrices_of(point: &PointState) -> Vec<(&'static str, Matrix2<f64>, &'static str)> {
-    let mut matrices = vec![
-        ("F", point.gradient, "Deformation gradient ∂x/∂X"),
-        ("R", point.rotation.matrix(), "Rotation of the polar decomposition F = R S"),
-        ("S", point.stretch, "Stretch of the polar decomposition F = R S"),
-    ];
-    // Linear theory has neither R nor S.
-    matrices.truncate(if point.is_linear { 1 } else { 3 });
-    matrices
 }

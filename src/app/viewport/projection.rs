@@ -1,7 +1,6 @@
 //! Projection from the plane of the body to the window.
 
 use crate::app::interface::*;
-use crate::render::Viewport;
 
 /// Projection from metres to window positions.
 #[derive(Clone, Copy, Debug)]
@@ -11,13 +10,9 @@ pub(crate) struct Projection {
 }
 
 impl Projection {
-    fn offset(&self, p: Vector2<f64>) -> [f64; 2] {
-        self.camera.to_view(p)
-    }
-
     /// Returns the window position of a point; positions far outside the view are clamped.
     pub(crate) fn point(&self, p: Vector2<f64>) -> Pos2 {
-        let [x, y] = self.offset(p).map(|v| v.clamp(-1e5, 1e5) as f32);
+        let [x, y] = self.camera.to_view(p).map(|v| v.clamp(-1e5, 1e5) as f32);
         self.rect.center() + vec2(x, y)
     }
 
@@ -31,7 +26,7 @@ impl Projection {
     /// `f32`.
     pub(crate) fn segment(&self, a: Vector2<f64>, b: Vector2<f64>) -> Option<[Pos2; 2]> {
         let half = [f64::from(self.rect.width()) * 0.5 + 16.0, f64::from(self.rect.height()) * 0.5 + 16.0];
-        let [from, to] = clip(self.offset(a), self.offset(b), half)?;
+        let [from, to] = clip(self.camera.to_view(a), self.camera.to_view(b), half)?;
         let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
         Some([place(from), place(to)])
     }
@@ -56,13 +51,6 @@ fn clip(a: [f64; 2], b: [f64; 2], half: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     }
     let at = |t: f64| [a[0] + t * d[0], a[1] + t * d[1]];
     (enter <= leave).then(|| [at(enter), at(leave)])
-}
-
-/// Converts an area of the window to pixels.
-pub(crate) fn viewport(place: egui::Rect, pixels_per_point: f32) -> Viewport {
-    let place = place * pixels_per_point;
-    let [corner, end] = [place.min, place.max].map(|p| [p.x, p.y].map(|v| v.round().max(0.0) as u32));
-    Viewport { corner, size: [0, 1].map(|axis| end[axis].saturating_sub(corner[axis])) }
 }
 
 #[cfg(test)]

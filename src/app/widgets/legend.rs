@@ -1,6 +1,6 @@
 //! Legend marks, which show how each line over the body is drawn, and entries of the keys of plots.
 
-use egui::{Color32, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::app::widgets::palette::SMALL;
 
@@ -18,14 +18,10 @@ impl LegendMark {
 
     /// Paints the mark to the right of the point `left`.
     pub(crate) fn paint(self, painter: &Painter, left: Pos2, color: Color32) {
-        let stroke = Stroke::new(2.5, color);
+        let (ends, stroke) = ([left, left + vec2(Self::WIDTH, 0.0)], Stroke::new(2.5, color));
         match self {
-            Self::Line => _ = painter.line_segment([left, left + vec2(Self::WIDTH, 0.0)], stroke),
-            Self::Dashes => {
-                for x in [0.0, 7.0, 14.0] {
-                    painter.line_segment([left + vec2(x, 0.0), left + vec2((x + 4.5).min(Self::WIDTH), 0.0)], stroke);
-                }
-            }
+            Self::Line => _ = painter.line_segment(ends, stroke),
+            Self::Dashes => painter.extend(Shape::dashed_line(&ends, stroke, 4.5, 2.5)),
             Self::Outline => {
                 let swatch = Rect::from_min_max(left - vec2(0.0, 4.0), left + vec2(Self::WIDTH, 4.0));
                 painter.rect_stroke(swatch, 0.0, Stroke::new(1.0, color), StrokeKind::Inside);

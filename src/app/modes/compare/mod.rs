@@ -129,13 +129,13 @@ impl Compare {
 
     /// Returns `true` if the user has moved the camera.
     pub(crate) fn is_moved(&self) -> bool {
-        self.controller.as_ref().is_some_and(CameraController::is_moved)
+        self.controller.as_ref().is_some_and(|controller| controller.own.is_some())
     }
 
     /// Fits the camera to all bodies.
     pub(crate) fn fit(&mut self) {
         self.swept = None;
-        self.controller.iter_mut().for_each(CameraController::fit);
+        self.controller.iter_mut().for_each(|controller| controller.own = None);
     }
 
     /// Returns the bodies of the panes for the render pass.

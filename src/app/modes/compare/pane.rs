@@ -224,7 +224,7 @@ impl Pane {
                 wanted,
                 options: input.view,
                 exact: if wanted.is_some() { &[] } else { exact },
-                note: note.as_deref().map(|note| (note, palette.text)),
+                note: note.as_deref(),
                 main: None,
             };
             overlay::paint(&painter, &overlay, ui.visuals());
