@@ -33,5 +33,6 @@ pub(super) use crate::method::METHODS;
 pub(super) use crate::render::colormap::ColorMap;
 pub(super) use crate::render::display_geometry::DisplayGeometry;
 pub(super) use crate::render::{Camera, Margins, View};
-pub(super) use crate::scene::{Axis, Beam, Material, Place, SectionLine, Support, keys, limits, registry};
+pub(super) use crate::scene::limits::{self, Limit};
+pub(super) use crate::scene::{Axis, Beam, Material, Place, SectionLine, Support, keys, registry};
 pub(super) use crate::simulation::{Motion, PointValues};

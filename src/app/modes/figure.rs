@@ -1,12 +1,9 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
+use super::*;
 use crate::app::action::FigureFile;
-use crate::app::interface::*;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
-use crate::app::widgets::chart::{self, ChartPainter};
-use crate::plot::{self, ChartAxis};
-use crate::study::figure::{Figure, FigurePoint, FigureSeries, Mark};
 
 /// Saves a figure in the current folder under the first free name, and returns its path.
 ///

@@ -6,3 +6,9 @@ pub(crate) mod learn;
 pub(crate) mod measure;
 pub(crate) mod motion_plot;
 pub(crate) mod section_plot;
+
+use crate::app::interface::*;
+use crate::app::widgets::chart::{self, ChartPainter};
+use crate::plot::{self, Anchor, ChartAxis, DrawTarget, Text, solid};
+use crate::study::Setting;
+use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};

@@ -1,11 +1,8 @@
 //! Plots of a motion: energy by kind, and displacement of the first probe over time.
 
-use crate::app::interface::*;
-use crate::app::modes::figure;
+use super::*;
 use crate::app::session::history::{History, MotionSample};
 use crate::app::view_options::MotionPlot;
-use crate::plot::{DrawTarget, solid};
-use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, Mark};
 
 const PLOTS: [(MotionPlot, &str, &str); 2] = [
     (MotionPlot::Energy, "Energy", "Energy over time, by kind"),

@@ -1,14 +1,12 @@
 //! Plots of sections: the stress along each section of the scene, and N, V and M along its beam.
 
-use crate::app::interface::*;
-use crate::app::modes::figure;
+use super::*;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::objects::add_middle_section;
 use crate::format::Context;
 use crate::section::{Section, SectionError};
 use crate::simulation::Equilibrium;
 use crate::state::State;
-use crate::study::figure::Figure;
 use crate::study::section_chart::{self, COMPONENTS, STRESSES};
 
 /// Sections of one equilibrium.

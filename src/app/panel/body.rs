@@ -1,7 +1,6 @@
 //! Panel section of the material and the mesh.
 
-use crate::app::interface::*;
-use crate::app::panel::Panel;
+use super::*;
 use crate::app::session::has_mesh_of;
 use crate::scene::Plane;
 

@@ -1,11 +1,9 @@
 //! Loads and supports in the panel: the edge or point of each, and buttons that add and remove them.
 
+use egui::DragValue;
 use std::cell::RefCell;
 
-use egui::DragValue;
-
-use crate::app::interface::*;
-use crate::app::panel::Panel;
+use super::*;
 use crate::app::viewport::arrow::LoadRanges;
 use crate::app::viewport::objects::{
     self, Object, ObjectChange, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,

@@ -1,9 +1,7 @@
 //! Panel section of force, gravity and moment.
 
-use crate::app::interface::*;
-use crate::app::panel::{Panel, combo, edges};
+use super::*;
 use crate::app::viewport::arrow::{DOWN, LoadRanges, polar_form, vector};
-use crate::scene::limits::Limit;
 
 /// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;

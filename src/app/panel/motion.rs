@@ -1,7 +1,6 @@
 //! Panel section of a motion: integrator, time step, solves per step, damping and speed.
 
-use crate::app::interface::*;
-use crate::app::panel::Panel;
+use super::*;
 
 /// Selectable speeds with their labels.
 const SPEEDS: [(f64, &str); 7] = [

@@ -1,9 +1,8 @@
 //! Panel section of the result: status, iterations, errors, certificate, times.
 
+use super::*;
 use crate::app::diagnosis::{DRIFT_TIP, drift, drift_text, error_tip, errors, load_text, rho, stability, state_text};
-use crate::app::interface::*;
 use crate::app::language::signed_percent;
-use crate::app::panel::supports;
 use crate::app::session::clock::fraction;
 use crate::study::rho_text;
 

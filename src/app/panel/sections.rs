@@ -1,9 +1,7 @@
 //! Panel section of the cuts whose section forces are shown.
 
+use super::*;
 use crate::app::diagnosis::state_text;
-use crate::app::interface::*;
-use crate::app::panel::Panel;
-use crate::app::panel::supports::TURNS;
 use crate::app::viewport::objects::add_middle_section;
 use crate::study::section_chart;
 
@@ -67,5 +65,5 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-const NORMAL: NumberField = NumberField::new("Normal", TURNS, -180.0..=180.0)
+const NORMAL: NumberField = NumberField::new("Normal", supports::TURNS, -180.0..=180.0)
     .tip("Direction of the section's normal, counter-clockwise from the x axis; it points to the part in front");

@@ -1,9 +1,7 @@
 //! Panel section of moving supports: prescribed displacements and rotations, and reactions.
 
-use crate::app::interface::*;
-use crate::app::panel::{Panel, combo};
+use super::*;
 use crate::format::Context;
-use crate::scene::limits::Limit;
 
 /// Returns the support that the sliders move, with its index; `None` for a motion, or if no support of this scene has
 /// been moved.

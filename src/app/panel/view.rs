@@ -1,7 +1,6 @@
 //! Panel section of the display options.
 
-use crate::app::interface::*;
-use crate::app::panel::{Panel, combo};
+use super::*;
 
 pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     let shown = panel.view.field;

@@ -1,11 +1,10 @@
 //! Public interface of the lab: read and set by the window, screenshots, recordings and tests.
 
+use super::*;
 use crate::app::ThemeChoice;
-use crate::app::interface::*;
 use crate::app::language;
 use crate::app::modes::compare::{Pane, PaneSetting};
 use crate::app::modes::learn;
-use crate::app::shell::lab::{Desk, Lab};
 use crate::app::shell::settings::Settings;
 use crate::app::viewport::camera_controller::Box2;
 use crate::app::widgets::palette;

@@ -1,11 +1,9 @@
 //! Dispatch of actions: edits go to the session, other actions to the part of the window that they concern.
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::modes::compare::Compare;
 use crate::app::modes::{figure, learn};
-use crate::app::panel::PanelState;
 use crate::app::session::{Changed, Edit};
-use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::viewport::arrow::vector;
 use crate::app::viewport::objects::Object;
 use crate::app::viewport::pointer::Interaction;

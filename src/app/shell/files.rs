@@ -1,14 +1,13 @@
 //! Files: opening, saving, dropping, changes on disk, copies of the scene to the clipboard, the question before unsaved
 //! edits are lost, and the offer to restore the edits left by a crashed window.
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::platform::{IS_PAGE, files, page};
 use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::undo::UndoHistory;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
-use crate::app::shell::lab::{Lab, Request};
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.

@@ -2,15 +2,14 @@
 
 use egui::{CentralPanel, Panel};
 
+use super::*;
 use crate::app::diagnosis;
-use crate::app::interface::*;
 use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::learn;
 use crate::app::modes::motion_plot;
 use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
-use crate::app::shell::lab::{Desk, Lab, Request};
 use crate::app::shell::{shortcuts, status_bar, toolbar};
 use crate::app::viewport::time_line;
 use crate::app::widgets::palette;

@@ -1,11 +1,8 @@
 //! Mode Learn in the window: it has a desk of its own with the article's beam, and the user's desk is restored when it
 //! ends.
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::modes::learn::{Learn, Setup};
-use crate::app::panel::PanelState;
-use crate::app::session::document::built_in;
-use crate::app::shell::lab::{Desk, Lab};
 
 impl Lab {
     /// Enters or leaves Learn after a change of the mode.

@@ -2,11 +2,10 @@
 
 use egui::Panel;
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::panel::edges;
 use crate::app::session::Notice;
 use crate::app::shell::files::banner;
-use crate::app::shell::lab::Lab;
 use crate::app::viewport::objects;
 
 /// Time for which a message is shown.

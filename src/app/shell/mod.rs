@@ -14,3 +14,8 @@ pub(crate) mod shortcuts;
 pub(crate) mod status_bar;
 pub(crate) mod story;
 pub(crate) mod toolbar;
+
+use self::lab::{Desk, Lab, Request};
+use crate::app::interface::*;
+use crate::app::panel::PanelState;
+use crate::app::session::document::built_in;

@@ -3,11 +3,9 @@
 
 use egui::TouchPhase;
 
-use crate::app::interface::*;
-use crate::app::panel::PanelState;
+use super::*;
 use crate::app::platform::page;
-use crate::app::session::document::built_in;
-use crate::app::shell::lab::{Desk, Lab, Story};
+use crate::app::shell::lab::Story;
 
 struct Part {
     /// Text over the body, of at most eight words.

@@ -1,8 +1,7 @@
 //! Toolbar along the top: scene, run, modes, theme, help.
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::language::Language;
-use crate::app::shell::lab::{Desk, Lab};
 use crate::app::view_options::MODES;
 use crate::app::widgets::buttons::{Icon, at_right, icon_button};
 

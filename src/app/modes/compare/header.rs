@@ -2,12 +2,8 @@
 
 use egui::emath::GuiRounding;
 
-use super::pane::Pane;
-use super::setting::PANES;
-use super::{CompareInput, PaneChange};
+use super::*;
 use crate::app::diagnosis::{coarse_text, drift_text, error_color, error_text, error_tip, strain_text};
-use crate::app::interface::*;
-use crate::app::viewport::bars;
 
 /// Space between panes, points.
 const GAP: f32 = 6.0;

@@ -5,7 +5,7 @@ use egui::Panel;
 
 use self::header::Grid;
 use self::setting::PANES;
-use crate::app::interface::*;
+use super::*;
 use crate::app::session::clock::RealTimeClock;
 use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
@@ -16,7 +16,6 @@ use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController
 use crate::app::viewport::pointer::Interaction;
 use crate::app::viewport::projection::Projection;
 use crate::state::largest;
-use crate::study::Setting;
 
 mod header;
 mod pane;

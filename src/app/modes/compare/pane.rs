@@ -2,10 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::CompareInput;
-use super::setting::PaneSetting;
+use super::*;
 use crate::app::diagnosis::equilibrium_text;
-use crate::app::interface::*;
 use crate::app::session::WILD;
 use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
@@ -13,7 +11,6 @@ use crate::app::session::run::{Condition, Run};
 use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::LoadedBody;
-use crate::app::viewport::bars;
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::overlay::{self, Overlay};

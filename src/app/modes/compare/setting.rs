@@ -2,14 +2,12 @@
 
 use std::fmt;
 use std::str::FromStr;
-
 use thiserror::Error;
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::language;
 use crate::element::ELEMENTS;
 use crate::format::count;
-use crate::study::Setting;
 
 /// Smallest and largest number of panes.
 pub(super) const PANES: std::ops::RangeInclusive<usize> = 2..=4;

@@ -1,9 +1,7 @@
 //! Card of the growth of the body's area.
 
-use super::{Learn, triangle};
-use crate::app::interface::*;
+use super::*;
 use crate::app::language::signed_percent;
-use crate::scene::limits::Limit;
 
 /// Largest force of the slider, N.
 pub(super) const LARGEST_FORCE: f64 = 4e4;

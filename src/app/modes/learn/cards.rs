@@ -1,7 +1,6 @@
 //! Cards of the mode Learn. A new card is an entry here, and a module for its drawing.
 
-use super::area;
-use crate::app::interface::*;
+use super::*;
 
 /// Card that explains one step of the article.
 pub(crate) struct Card {

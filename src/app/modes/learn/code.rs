@@ -1,10 +1,6 @@
 //! Card of the method as ten lines of pseudocode. One line is highlighted; a step goes to the next one.
 
-use super::frames::angle_text;
-use super::triangle::Triangle;
-use super::{Learn, formula, not_triangles, step_buttons};
-use crate::app::interface::*;
-use crate::rotation::Rotation;
+use super::*;
 
 struct Line {
     indent: u8,

@@ -2,11 +2,7 @@
 
 use egui::Slider;
 
-use super::frames::{angle_text, paint_picked};
-use super::triangle::Triangle;
-use super::{CardView, Learn, NOT_TRIANGLES, not_triangles};
-use crate::app::interface::*;
-use crate::rotation::Rotation;
+use super::*;
 
 /// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
 const APART: f64 = 1.5;

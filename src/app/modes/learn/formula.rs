@@ -3,7 +3,7 @@
 use egui::text::LayoutJob;
 use egui::{Galley, TextFormat};
 
-use crate::app::interface::*;
+use super::*;
 
 /// Font size of a formula, points.
 pub(super) const SIZE: f32 = 19.0;

@@ -1,11 +1,6 @@
 //! Card of the rotated frame R of every triangle, and of F = R S of one triangle.
 
-use nalgebra::Matrix2;
-
-use super::triangle::Triangle;
-use super::{CardView, Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::interface::*;
-use crate::rotation::Rotation;
+use super::*;
 
 /// Smallest length of a drawn axis, points; finer meshes have none.
 const SHORTEST: f32 = 5.0;

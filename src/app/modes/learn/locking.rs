@@ -1,6 +1,6 @@
 //! Card of locking: the same beam with every element, one button each.
 
-use crate::app::interface::*;
+use super::*;
 
 /// Shows one button per element.
 pub(super) fn show(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {

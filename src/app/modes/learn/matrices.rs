@@ -1,10 +1,6 @@
 //! Card of the matrices: Ke and R Ke Rᵀ of the selected triangle as coloured cells, and the assembled matrix.
 
-use nalgebra::DMatrix;
-
-use super::triangle::{Triangle, assembled};
-use super::{Learn, NOT_TRIANGLES, formula, not_triangles};
-use crate::app::interface::*;
+use super::*;
 use crate::render::colormap;
 
 /// Sides of a small matrix and of the large one, points.

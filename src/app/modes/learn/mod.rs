@@ -3,11 +3,15 @@
 
 use cards::CardDisplay;
 use egui::Panel;
+use frames::{angle_text, paint_picked};
+use nalgebra::{DMatrix, Matrix2};
+use triangle::{Triangle, assembled};
 
-use crate::app::interface::*;
+use super::*;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::at_right;
+use crate::rotation::Rotation;
 
 mod area;
 mod cards;

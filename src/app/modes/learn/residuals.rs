@@ -1,12 +1,9 @@
 //! Card of the residual of every iteration on a logarithmic scale, compared with a line that falls by the factor ρ per
 //! iteration.
 
-use super::step_buttons;
+use super::*;
 use crate::app::diagnosis::rho_number;
-use crate::app::interface::*;
-use crate::app::widgets::chart::ChartPainter;
-use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
-use crate::study::figure::Ink;
+use crate::plot::ChartFrame;
 
 /// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

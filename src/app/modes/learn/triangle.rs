@@ -1,12 +1,10 @@
 //! Quantities of the article for the elements of a body.
 
-use nalgebra::{DMatrix, Matrix2};
-
-use crate::app::interface::*;
+use super::*;
 use crate::article::affine::Affine2;
 use crate::article::stiffness::ElementStiffness;
 use crate::element::QuadraturePoint;
-use crate::rotation::{Rotation, polar};
+use crate::rotation::polar;
 
 /// Three-node triangle, at rest and in the current state.
 #[derive(Clone, Copy, Debug)]

@@ -1,17 +1,15 @@
 //! Error against time of all settings measured on this machine, and the settings within given limits.
 
+use super::*;
 use crate::app::diagnosis::drift_text;
-use crate::app::interface::*;
 use crate::app::language::bound_percent;
 use crate::app::session::clock::FRAMES;
 use crate::app::session::facts::StudyFact;
 use crate::app::task::keyed::Keyed;
-use crate::app::widgets::chart::{self, ChartPainter};
 use crate::exact_beam::error_percent;
-use crate::plot::{Anchor, DrawTarget, SMALLEST_ERROR, Stroke, StudyChart, Text, mark, solid};
-use crate::scene::ElementKind;
-use crate::study::figure::Ink;
-use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study, StudyReference};
+use crate::plot::{SMALLEST_ERROR, Stroke, StudyChart, mark};
+use crate::scene::limits::BUDGET_MS;
+use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
 
 /// The study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug)]
@@ -280,7 +278,7 @@ fn settings(
             ui.add(egui::Label::new(text).truncate()).on_hover_text(tip);
         }
     });
-    let time = NumberField::new("Time ≤", limits::BUDGET_MS, 1e-3..=1e3).logarithmic(1e-3).tip(
+    let time = NumberField::new("Time ≤", BUDGET_MS, 1e-3..=1e3).logarithmic(1e-3).tip(
         "Longest computing time, ms: of a solve from rest, or of a frame of a motion at 60 Hz (one frame lasts 16.7 ms).",
     );
     let error = NumberField::new("Error ≤", keys::range("solver.max_error_percent"), 1e-3..=100.0)

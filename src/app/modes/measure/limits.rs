@@ -3,13 +3,9 @@
 
 use egui::EventFilter;
 
-use crate::app::interface::*;
-use crate::app::modes::measure::first_probe;
+use super::*;
 use crate::app::session::facts::with_default_methods;
-use crate::app::widgets::chart::ChartPainter;
-use crate::plot::{self, Anchor, DrawTarget, LimitsChart, Text, solid};
-use crate::study::Setting;
-use crate::study::figure::{Ink, LoadAxis};
+use crate::plot::LimitsChart;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
 
 /// Widths of the columns left and right of the strips, points.

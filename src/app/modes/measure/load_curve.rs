@@ -1,12 +1,9 @@
 //! Load curve. For a cantilever it shows linear theory, the exact beam, the result of every method, and the loads at
 //! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
-use crate::app::interface::*;
-use crate::app::modes::figure;
-use crate::app::modes::measure::first_probe;
+use super::*;
 use crate::app::session::facts::Curve;
 use crate::format::engineering_pair_among;
-use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
 

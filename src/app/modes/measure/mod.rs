@@ -4,8 +4,8 @@ pub(crate) mod budget;
 pub(crate) mod limits;
 pub(crate) mod load_curve;
 
-use crate::app::interface::*;
-use crate::app::modes::measure::budget::Budget;
+use self::budget::Budget;
+use super::*;
 use crate::app::session::facts;
 
 /// State of Measure.
