@@ -43,11 +43,7 @@ pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, in
         }
     };
     ui.horizontal_wrapped(|ui| {
-        for (plot, word, tip) in PLOTS {
-            if ui.add(option_button(*chosen == plot, tr(word))).on_hover_text(tr(tip)).clicked() {
-                *chosen = plot;
-            }
-        }
+        *chosen = options(ui, PLOTS, Some(*chosen)).unwrap_or(*chosen);
         ui.spacing_mut().item_spacing.x = 14.0;
         let shown = series.iter().filter(|line| !line.points.is_empty());
         for line in shown {

@@ -166,6 +166,7 @@ impl SectionPlot {
                 ui.weak(state);
             }
             ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
                 let is_numbered = offered.contains(&SectionFigure::Stress(1, 0));
                 self.shown = options(ui, offered.iter().map(|figure| figure.option(is_numbered)), shown).or(self.shown);
                 if has_none {

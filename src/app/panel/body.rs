@@ -125,13 +125,12 @@ pub(super) fn material(ui: &mut Ui, panel: &mut Panel<'_>) {
     let present = panel.scene.material;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for MaterialPreset { name, young, poisson, density, .. } in PRESETS {
-            let preset = Material { young, poisson, density, ..present };
+        let presets = PRESETS.map(|MaterialPreset { name, young, poisson, density, .. }| {
             let tip = format!("E {}, ν {poisson}, {}", engineering(young, "Pa"), engineering(density, "kg/m³"));
-            let chosen = preset == present;
-            if ui.add(option_button(chosen, tr(name))).on_hover_text(tip).clicked() && !chosen {
-                panel.edit("Young E", |scene| scene.material = preset);
-            }
+            (Material { young, poisson, density, ..present }, name, tip)
+        });
+        if let Some(preset) = options(ui, presets, Some(present)).filter(|preset| *preset != present) {
+            panel.edit("Young E", |scene| scene.material = preset);
         }
     });
     panel.rows(ui, material_rows(present.plane));

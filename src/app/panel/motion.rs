@@ -51,13 +51,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(tr("Speed"));
-        let tip = tr("Simulated seconds per second: 1 is real time, less is slow motion");
-        for (speed, word) in SPEEDS {
-            let chosen = (session.playback.clock.speed - speed).abs() < 1e-9;
-            if ui.add(option_button(chosen, word)).on_hover_text(tip).clicked() {
-                panel.actions.push(Action::Speed(speed));
-            }
-        }
+        let tip = "Simulated seconds per second: 1 is real time, less is slow motion";
+        let speeds = SPEEDS.map(|(speed, word)| (speed, word, tip));
+        panel.actions.extend(options(ui, speeds, Some(session.playback.clock.speed)).map(Action::Speed));
     });
     let chosen = settings.integrator.entry();
     let entries = INTEGRATORS.iter().map(|entry| (entry.kind, entry.id, entry.about));

@@ -124,17 +124,16 @@ pub(crate) fn option_button<'a>(chosen: bool, text: impl IntoAtoms<'a>) -> Butto
     Button::selectable(chosen, text).frame_when_inactive(true)
 }
 
-/// Shows a button for each option, with its name and description, close to each other in a row; returns the one that was
-/// clicked.
-pub(crate) fn options<'a, T: PartialEq>(
+/// Shows a button for each option, with its name and description, in a row; returns the one that was clicked.
+pub(crate) fn options<T: PartialEq>(
     ui: &mut Ui,
-    offered: impl Iterator<Item = (T, String, &'a str)>,
+    offered: impl IntoIterator<Item = (T, impl AsRef<str>, impl AsRef<str>)>,
     shown: Option<T>,
 ) -> Option<T> {
-    ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
     let mut clicked = None;
     for (option, word, tip) in offered {
-        if ui.add(option_button(shown.as_ref() == Some(&option), tr(&word))).on_hover_text(tr(tip)).clicked() {
+        let button = option_button(shown.as_ref() == Some(&option), tr(word.as_ref()));
+        if ui.add(button).on_hover_text(tr(tip.as_ref())).clicked() {
             clicked = Some(option);
         }
     }

@@ -21,12 +21,11 @@ pub(super) fn steps(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 /// Shows the buttons that choose a method, and the residuals.
 pub(super) fn methods(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        for method in METHODS.iter().filter(|m| [MethodKind::Warped, MethodKind::Newton].contains(&m.kind)) {
-            let chosen = session.scene().solver.method == method.kind;
-            let text = if method.kind == MethodKind::Newton { "newton: A + G" } else { "warped: A alone" };
-            if ui.add(option_button(chosen, tr(text))).on_hover_text(tr(method.about)).clicked() && !chosen {
-                actions.push(Action::edit("Method", session.scene(), |scene| scene.solver.method = method.kind));
-            }
+        let present = session.scene().solver.method;
+        let offered = [(MethodKind::Warped, "warped: A alone"), (MethodKind::Newton, "newton: A + G")];
+        let methods = offered.map(|(kind, text)| (kind, text, kind.entry().about));
+        if let Some(kind) = options(ui, methods, Some(present)).filter(|kind| *kind != present) {
+            actions.push(Action::edit("Method", session.scene(), |scene| scene.solver.method = kind));
         }
         let simulation = session.simulation();
         let iterations = count(simulation.iterations(), "iteration");

@@ -54,8 +54,8 @@ pub(crate) fn show(
     }
     let show_table = |ui: &mut Ui| {
         ui.horizontal_wrapped(|ui| {
-            let texts = offered.iter().map(|&(plot, word, tip)| (plot, word.to_owned(), tip));
-            actions.extend(options(ui, texts, Some(shown)).map(Action::Plot));
+            ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
+            actions.extend(options(ui, offered.iter().copied(), Some(shown)).map(Action::Plot));
             figure::export_menu(ui, &drawn, actions);
         });
         figure::table(ui, &drawn);
