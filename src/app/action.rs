@@ -3,7 +3,6 @@
 use crate::app::platform::IS_PAGE;
 use crate::app::prelude::*;
 use crate::app::view_options::Toggle;
-use crate::study::figure::Figure;
 use crate::study::path_chart::Ordinate;
 
 /// Request from a click, a drag or a key.
@@ -57,8 +56,8 @@ pub(crate) enum Action {
     ToggleLanguage,
     /// Plot these quantities in the load curve.
     Plot(Ordinate),
-    /// Save a figure to a file.
-    Export(Box<Figure>, FigureFile),
+    /// Save the text of a figure to a file with this extension.
+    Export(&'static str, String),
     /// Save an image of the window.
     Screenshot,
     /// Copy the scene as TOML.
@@ -71,8 +70,6 @@ pub(crate) enum Action {
     Card(usize),
     /// Tell the story of the first start again.
     Story,
-    /// Use the scene of a measured setting.
-    Apply(Box<Scene>),
     /// Cancel the background solve of a large model, and keep the previous model.
     Cancel,
 }
@@ -88,24 +85,5 @@ impl Action {
     /// Returns `true` if the action exists here: only a web page has links.
     pub(crate) fn is_available(&self) -> bool {
         IS_PAGE || !matches!(self, Self::CopyLink)
-    }
-}
-
-/// File format of a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FigureFile {
-    Csv,
-    Svg,
-}
-
-impl FigureFile {
-    pub(crate) const ALL: [(Self, &'static str); 2] =
-        [(Self::Csv, "Every point as a table, with units"), (Self::Svg, "The plot and its table as a vector drawing")];
-
-    pub(crate) fn extension(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Svg => "svg",
-        }
     }
 }

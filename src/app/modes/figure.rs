@@ -1,22 +1,25 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
 use super::*;
-use crate::app::action::FigureFile;
 use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
 
-/// Saves a figure in the current folder under the first free name, and returns its path.
+/// Format of a file with a figure: its extension, its description, and the function that writes its text.
+type Format = (&'static str, &'static str, fn(&Figure) -> String);
+const FORMATS: [Format; 2] = [
+    ("csv", "Every point as a table, with units", Figure::csv),
+    ("svg", "The plot and its table as a vector drawing", |figure| plot::figures([figure]).svg()),
+];
+
+/// Saves the text of a figure in the current folder under the first free name, and returns its path.
 ///
 /// # Errors
 /// Error of the operating system.
-pub(crate) fn save(figure: &Figure, file: FigureFile) -> Result<PathBuf, Sentence> {
-    let new = NewFile::create(Path::new(""), file.extension()).map_err(|error| error.to_string())?;
-    let bytes = match file {
-        FigureFile::Csv => figure.csv().into_bytes(),
-        FigureFile::Svg => plot::figures([figure]).svg().into_bytes(),
-    };
+pub(crate) fn save(extension: &str, text: &str) -> Result<PathBuf, Sentence> {
+    let new = NewFile::create(Path::new(""), extension).map_err(|error| error.to_string())?;
     let path = new.path().to_owned();
-    files::save(&path, &bytes).map_err(|error| Sentence::located(path.display().to_string(), error.to_string()))?;
+    files::save(&path, text.as_bytes())
+        .map_err(|error| Sentence::located(path.display().to_string(), error.to_string()))?;
     Ok(path)
 }
 
@@ -51,9 +54,9 @@ pub(crate) fn plot(ui: &mut Ui, figure: &Figure, corners: [[f64; 2]; 2]) -> (Cha
 /// Shows the menu that exports a figure.
 pub(crate) fn export_menu(ui: &mut Ui, figure: &Figure, actions: &mut Vec<Action>) {
     ui.menu_button(tr("Export"), |ui| {
-        for (file, tip) in FigureFile::ALL {
-            if ui.button(file.extension().to_uppercase()).on_hover_text(tr(tip)).clicked() {
-                actions.push(Action::Export(Box::new(figure.clone()), file));
+        for (extension, tip, text) in FORMATS {
+            if ui.button(extension.to_uppercase()).on_hover_text(tr(tip)).clicked() {
+                actions.push(Action::Export(extension, text(figure)));
             }
         }
     });

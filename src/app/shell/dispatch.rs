@@ -70,7 +70,6 @@ impl Lab {
             Action::Escape if self.desk.session.is_working() => self.desk.session.cancel(),
             Action::Escape => self.desk.viewport.probe = None,
             Action::Edit(label, scene) => self.edit(ctx, label, scene),
-            Action::Apply(scene) => _ = self.apply(ctx, Edit::Scene("Method", scene)),
             Action::ToggleRun => {
                 let is_running = self.desk.session.is_running();
                 // A body that has reached its end cannot be paused.
@@ -118,8 +117,8 @@ impl Lab {
             }
             Action::ToggleLanguage => self.settings.language = self.settings.language.other(),
             Action::Plot(plot) => self.desk.view.curve_plot = Some(plot),
-            Action::Export(figure, file) => {
-                let text = match figure::save(&figure, file) {
+            Action::Export(extension, text) => {
+                let text = match figure::save(extension, &text) {
                     Ok(path) => fill!("Saved %{file}", file = path.display()),
                     Err(reason) => fill!("Not saved: %{reason}", reason = said(&reason)),
                 };

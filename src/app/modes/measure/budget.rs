@@ -155,7 +155,7 @@ impl BudgetView<'_> {
 
     /// Returns the action that applies a measured setting.
     fn apply(&self, m: &Measurement) -> Action {
-        Action::Apply(Box::new(m.apply(self.scene)))
+        Action::Edit("Method", Box::new(m.apply(self.scene)))
     }
 }
 
