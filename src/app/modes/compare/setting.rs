@@ -70,20 +70,16 @@ impl PaneSetting {
     /// Returns the scene with these settings.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut own = Setting {
-            method: self.method.unwrap_or(scene.solver.method),
-            element: self.element.unwrap_or(scene.element()),
-            cells: self.cells,
-            iterations: 0,
-            stepping: None,
-        }
-        .apply(scene);
+        let mut own = scene.clone();
+        own.set_element(self.element.unwrap_or(scene.element()));
+        own.beam.iter_mut().for_each(|beam| beam.cells = self.cells.unwrap_or(beam.cells));
+        own.solver.method = self.method.unwrap_or(scene.solver.method);
         // A pane with a number of iterations counts them; other settings than the scene's are iterated to the tolerance.
-        let is_scenes = |own: &Scene| {
-            (own.solver.method, own.element(), &own.beam) == (scene.solver.method, scene.element(), &scene.beam)
-        };
-        let stops = self.iterations.is_none() && is_scenes(&own);
-        own.solver.accept_after = if stops { scene.solver.accept_after } else { 0 };
+        let is_scenes =
+            (own.solver.method, own.element(), &own.beam) == (scene.solver.method, scene.element(), &scene.beam);
+        if self.iterations.is_some() || !is_scenes {
+            own.solver.accept_after = 0;
+        }
         own.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
         own
     }

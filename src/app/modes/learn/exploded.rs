@@ -7,18 +7,21 @@ use super::*;
 /// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
 const APART: f64 = 1.5;
 
-/// Moves the drawn points of every element towards the exploded view; the fraction `rotation_part` is 0 for the body itself
-/// and 1 for the exploded view. `rest` are the points at rest.
-pub(super) fn place(simulation: &Simulation, rotation_part: f64, rest: &[Vector2<f64>], points: &mut [Vector2<f64>]) {
-    let count = simulation.system().mesh().element_count().max(1);
-    let each = (points.len() / count).max(1);
-    let body = mean(rest);
-    let rotations = simulation.element_rotations();
-    for ((points, rest), rotation) in points.chunks_mut(each).zip(rest.chunks(each)).zip(rotations) {
-        let (now, apart) = (mean(points), body + (mean(rest) - body) * APART);
-        let center = now + (apart - now) * rotation_part;
-        let back = Rotation::from_angle(-rotation_part * rotation.angle());
-        points.iter_mut().for_each(|p| *p = center + back.apply(*p - now));
+impl Learn {
+    /// Moves the drawn points of every element towards the exploded view.
+    pub(crate) fn place(&self, simulation: &Simulation, geometry: &DisplayGeometry, points: &mut [Vector2<f64>]) {
+        let mesh = simulation.system().mesh();
+        let mut rest = Vec::new();
+        geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
+        let each = (points.len() / mesh.element_count().max(1)).max(1);
+        let body = mean(&rest);
+        let rotations = simulation.element_rotations();
+        for ((points, rest), rotation) in points.chunks_mut(each).zip(rest.chunks(each)).zip(rotations) {
+            let (now, apart) = (mean(points), body + (mean(rest) - body) * APART);
+            let center = now + (apart - now) * self.rotation_part;
+            let back = Rotation::from_angle(-self.rotation_part * rotation.angle());
+            points.iter_mut().for_each(|p| *p = center + back.apply(*p - now));
+        }
     }
 }
 

@@ -19,7 +19,6 @@ mod code;
 mod exploded;
 mod formula;
 mod frames;
-mod locking;
 mod matrices;
 mod residuals;
 mod triangle;
@@ -121,14 +120,6 @@ impl Learn {
         matches!(self.card().content, CardDisplay::Steps | CardDisplay::Methods)
     }
 
-    /// Moves the drawn points to their positions in the exploded view.
-    pub(crate) fn place(&self, simulation: &Simulation, geometry: &DisplayGeometry, points: &mut [Vector2<f64>]) {
-        let mesh = simulation.system().mesh();
-        let mut rest = Vec::new();
-        geometry.points(&|n| mesh.nodes()[n as usize], &mut rest);
-        exploded::place(simulation, self.rotation_part, &rest, points);
-    }
-
     /// Selects the element that is drawn at a position in the window.
     pub(crate) fn pick(&mut self, view: &CardView<'_>, at: Pos2) {
         let place = |p: u32| view.body.points.get(p as usize).map(|&p| view.projection.point(p));
@@ -162,7 +153,7 @@ impl Learn {
             CardDisplay::Code => code::show(ui, session, self, actions),
             CardDisplay::Steps => residuals::steps(ui, session, actions),
             CardDisplay::Methods => residuals::methods(ui, session, actions),
-            CardDisplay::Elements => locking::show(ui, session.scene(), actions),
+            CardDisplay::Elements => residuals::elements(ui, session.scene(), actions),
             CardDisplay::ToMeasure => {
                 let tip = "Leave the cards, and measure your own scene (B)";
                 if ui.button(tr("Open Measure")).on_hover_text(tr(tip)).clicked() {

@@ -1,5 +1,5 @@
-//! Card of the residual of every iteration on a logarithmic scale, compared with a line that falls by the factor ρ per
-//! iteration.
+//! Cards of the residual of every iteration on a logarithmic scale, compared with a line that falls by the factor ρ per
+//! iteration; and the choice of method or element on a card.
 
 use super::*;
 use crate::app::diagnosis::rho_number;
@@ -37,6 +37,19 @@ pub(super) fn methods(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>)
         ui.add(Label::new(text).extend());
     });
     plot(ui, session);
+}
+
+/// Shows one button per element: the same beam locks with some of them.
+pub(super) fn elements(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
+    for element in scene.elements() {
+        let chosen = scene.element() == element;
+        let button = ui.add(Button::selectable(chosen, RichText::new(element.id()).size(16.0)));
+        if button.clicked() && !chosen {
+            actions.push(Action::edit("Element", scene, |scene| scene.set_element(element)));
+        }
+        ui.add(Label::new(RichText::new(tr(element.entry().about)).small().weak()).wrap());
+        ui.add_space(2.0);
+    }
 }
 
 fn last_ratio(residuals: &[f64]) -> Option<f64> {
