@@ -18,35 +18,97 @@ use crate::format::grouped;
 const ERROR: &str = "ERROR";
 const ERROR_REMARK: f32 = 178.0;
 
+/// Space between the parts of an entry, points, and size of its bar.
+const GAP: f32 = 6.0;
+const BAR: Vec2 = vec2(56.0, 6.0);
+
+/// Entry of the bar.
 struct BarNumber {
     name: &'static str,
-    value: String,
-    /// Remark after the number.
-    word: Cow<'static, str>,
+    /// Name, number, and the remark after it, which is empty if there is none.
+    texts: [Arc<Galley>; 3],
     tip: String,
     color: Color32,
-    /// `true` if the remark needs attention, as it does beside a number that needs it.
-    is_doubtful: bool,
     /// Ratio of the number to its limit, drawn as a bar with the limit in its middle.
     ratio: Option<f64>,
 }
 
 impl BarNumber {
-    /// Returns a number without remark and bar.
-    fn new(name: &'static str, value: String, tip: impl Into<String>, color: Color32) -> Self {
-        Self { name, value, word: Cow::default(), tip: tip.into(), color, is_doubtful: false, ratio: None }
+    /// Returns a number with a remark, without bar. The remark has the colour of a number that needs attention, or needs
+    /// it itself if it `is_doubtful`.
+    fn new(
+        ui: &Ui,
+        (name, value): (&'static str, &str),
+        (remark, is_doubtful): (&str, bool),
+        tip: impl Into<String>,
+        color: Color32,
+    ) -> Self {
+        let palette = Palette::new(ui.visuals());
+        let text =
+            |text: &str, size, color| ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), color);
+        let remark_color = match [palette.warning, palette.large, palette.error].contains(&color) {
+            true => color,
+            false if is_doubtful => palette.warning,
+            false => palette.secondary,
+        };
+        let [title, remark] =
+            [(tr(name), palette.secondary), (remark, remark_color)].map(|(own, color)| text(own, SMALL, color));
+        Self { name, texts: [title, text(value, HEADLINE, color), remark], tip: tip.into(), color, ratio: None }
+    }
+
+    /// Returns the width of the number, points: a minimum keeps what follows in place when the number of digits changes.
+    fn number_width(&self, wide: bool) -> f32 {
+        self.texts[1].size().x.max(if wide { 62.0 } else { 0.0 })
+    }
+
+    /// Returns the width without the remark, points.
+    fn width(&self, wide: bool) -> f32 {
+        let bar = if wide && self.ratio.is_some() { BAR.x + GAP } else { 0.0 };
+        self.texts[0].size().x + GAP + self.number_width(wide) + bar
+    }
+
+    fn remark_width(&self) -> f32 {
+        if self.texts[2].is_empty() { 0.0 } else { self.texts[2].size().x + GAP }
+    }
+
+    /// Shows the name, the number, its bar if the window is `wide` and, in its slot if there is one, its remark. The width of a
+    /// slot is in points.
+    fn show(self, ui: &mut Ui, wide: bool, slot: Option<f32>) {
+        let palette = Palette::new(ui.visuals());
+        let widths = [self.texts[0].size().x, self.number_width(wide), self.texts[2].size().x];
+        let size = vec2(self.width(wide) + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        let (middle, mut x) = (rect.center().y, rect.left());
+        let shown = if slot.is_some() && !self.texts[2].is_empty() { 3 } else { 2 };
+        for (i, (galley, width)) in self.texts.iter().zip(widths).enumerate().take(shown) {
+            let at = pos2(x, middle - 0.5 * galley.size().y);
+            match i {
+                1 => semibold(ui.painter(), at, galley, self.color),
+                _ => ui.painter().galley(at, galley.clone(), self.color),
+            }
+            x += width + GAP;
+        }
+        if let Some(ratio) = self.ratio.filter(|_| wide) {
+            let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);
+            ui.painter().rect_filled(bar, 2.0, palette.line);
+            let end = bar.left() + bar.width() * (0.5 * ratio).clamp(0.0, 1.0) as f32;
+            ui.painter().rect_filled(Rect::from_min_max(bar.min, pos2(end, bar.bottom())), 2.0, self.color);
+            ui.painter().vline(bar.center().x, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
+        }
+        let spoken = self.texts.iter().take(shown).map(|galley| galley.text()).collect::<Vec<_>>().join(" ");
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+        response.on_hover_text(self.tip);
     }
 }
 
 pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: &mut Vec<Action>) {
-    let palette = Palette::new(ui.visuals());
     // In a narrow window the numbers have no bars.
     let wide = !view.narrow;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match session.simulation().motion() {
-            Some(_) => of_motion(&palette, session).into(),
-            None => of_solve(&palette, session),
+            Some(_) => of_motion(ui, session).into(),
+            None => of_solve(ui, session),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let drawer = Drawer::of(session.scene());
@@ -62,23 +124,23 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: 
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 // Remarks have the room that the numbers leave.
-                let texts: Vec<Texts> = entries.into_iter().map(|entry| Texts::of(ui, &palette, entry, wide)).collect();
-                let gaps = ui.spacing().item_spacing.x * texts.len().saturating_sub(1) as f32;
-                let mut room = ui.available_width() - gaps - texts.iter().map(Texts::width).sum::<f32>();
-                for texts in texts {
-                    let (is_error, remark) = (texts.entry.name == ERROR, texts.remark_width());
+                let gaps = ui.spacing().item_spacing.x * entries.len().saturating_sub(1) as f32;
+                let mut room = ui.available_width() - gaps - entries.iter().map(|entry| entry.width(wide)).sum::<f32>();
+                for entry in entries {
+                    let (is_error, remark) = (entry.name == ERROR, entry.remark_width());
                     let has_remark = remark <= room;
                     let slot = if is_error && wide { ERROR_REMARK.max(remark) } else { remark };
                     let slot = if slot <= room { slot } else { remark };
                     room -= if has_remark { slot } else { 0.0 };
-                    number(ui, &palette, texts, has_remark.then_some(slot));
+                    entry.show(ui, wide, has_remark.then_some(slot));
                 }
             });
         });
     });
 }
 
-fn of_solve(palette: &Palette, session: &Session) -> Vec<BarNumber> {
+fn of_solve(ui: &Ui, session: &Session) -> Vec<BarNumber> {
+    let palette = &Palette::new(ui.visuals());
     let errors = errors(session);
     let simulation = session.simulation();
     let solve = session.timed_from_rest().filter(|_| simulation.status().is_success());
@@ -96,36 +158,30 @@ fn of_solve(palette: &Palette, session: &Session) -> Vec<BarNumber> {
     let color = if is_late { palette.secondary } else { error_color(palette, errors.bound) };
     let of_reference = error_tip(session.known_reference(), session.reference_failure());
     let beside = tr("Beside it: a reason to doubt the result, or else the main source of the error");
-    let error = BarNumber {
-        word: match (doubt, errors.source) {
-            // A large error has a source, whatever else is to be doubted.
-            (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
-                format!("{} · {doubt}", tr(source.word())).into()
-            }
-            (Some(doubt), _) if is_without_reference => format!("{} · {doubt}", tr("no reference")).into(),
-            (Some(doubt), _) if sought.is_none() => doubt.into(),
-            (_, Some(source)) => tr(source.word()).into(),
-            (None, None) if is_without_reference => tr("no reference").into(),
-            (_, None) => sought.map_or(Cow::default(), |(done, _)| {
-                let percent = format!("{:.0}", 100.0 * done);
-                fill!("computing the reference: %{percent} %", percent).into()
-            }),
-        },
-        is_doubtful,
-        ..BarNumber::new(
-            ERROR,
-            error_text(errors.own, errors.bound, session.live().is_some()),
-            format!("{of_reference}\n{beside}"),
-            color,
-        )
+    let remark: Cow<'_, str> = match (doubt, errors.source) {
+        // A large error has a source, whatever else is to be doubted.
+        (Some(doubt), Some(source)) if errors.own.is_some_and(is_large) => {
+            format!("{} · {doubt}", tr(source.word())).into()
+        }
+        (Some(doubt), _) if is_without_reference => format!("{} · {doubt}", tr("no reference")).into(),
+        (Some(doubt), _) if sought.is_none() => doubt.into(),
+        (_, Some(source)) => tr(source.word()).into(),
+        (None, None) if is_without_reference => tr("no reference").into(),
+        (_, None) => sought.map_or(Cow::default(), |(done, _)| {
+            let percent = format!("{:.0}", 100.0 * done);
+            fill!("computing the reference: %{percent} %", percent).into()
+        }),
     };
+    let value = error_text(errors.own, errors.bound, session.live().is_some());
+    let tip = format!("{of_reference}\n{beside}");
+    let error = BarNumber::new(ui, (ERROR, &value), (&remark, is_doubtful), tip, color);
     let tip = "Computing time of a solve from rest, the median of repeated solves, without the check of stability. Linear \
                theory factors its matrix once for all loads: that time is not in it.";
     let value = if seconds > 0.0 { engineering(two_digits(seconds), "s") } else { UNKNOWN.to_owned() };
     let color = if is_last { palette.secondary } else { palette.text };
     let is_unsolved = solve.is_some_and(|solve| !solve.is_solved);
-    let word = if is_unsolved { tr("not reached from rest").into() } else { Cow::default() };
-    let mut entries = vec![error, BarNumber { word, ..BarNumber::new("TIME", value, tr(tip), color) }];
+    let remark = if is_unsolved { tr("not reached from rest") } else { "" };
+    let mut entries = vec![error, BarNumber::new(ui, ("TIME", &value), (remark, false), tr(tip), color)];
     if session.scene().solver.method == MethodKind::Warped {
         let tip = "Spectral radius of the warped iteration: each iteration multiplies the error by about ρ; above 1 it \
                    diverges";
@@ -134,124 +190,40 @@ fn of_solve(palette: &Palette, session: &Session) -> Vec<BarNumber> {
             Some(_) => palette.text,
             None => palette.secondary,
         };
-        entries.push(BarNumber {
-            word: match load_text(session.scene()) {
-                _ if rho.is_none() => Cow::default(),
-                _ if simulation.status().is_success() => tr("per iteration").into(),
-                // The equilibrium that is sought is not drawn.
-                Some(load) => fill!("at %{load}", load).into(),
-                None => tr("at the full load").into(),
-            },
-            ratio: rho,
-            ..BarNumber::new("ρ", rho.map_or_else(|| UNKNOWN.to_owned(), rho_number), tr(tip), color)
-        });
+        let remark: Cow<'_, str> = match load_text(session.scene()) {
+            _ if rho.is_none() => Cow::default(),
+            _ if simulation.status().is_success() => tr("per iteration").into(),
+            // The equilibrium that is sought is not drawn.
+            Some(load) => fill!("at %{load}", load).into(),
+            None => tr("at the full load").into(),
+        };
+        let value = rho.map_or_else(|| UNKNOWN.to_owned(), rho_number);
+        entries.push(BarNumber { ratio: rho, ..BarNumber::new(ui, ("ρ", &value), (&remark, false), tr(tip), color) });
     }
     entries
 }
 
-fn of_motion(palette: &Palette, session: &Session) -> [BarNumber; 3] {
+fn of_motion(ui: &Ui, session: &Session) -> [BarNumber; 3] {
+    let palette = &Palette::new(ui.visuals());
     let cost = session.timings().total().as_secs_f64();
     let step = session.scene().dynamics.time_step;
     let tip = fill!("Computing time of a time step, which simulates %{step}", step = engineering(step, "s"));
     let value = if cost > 0.0 { engineering(two_digits(cost), "s") } else { UNKNOWN.to_owned() };
     let color = if cost > step { palette.error } else { palette.text };
-    let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new("STEP", value, tip, color) };
+    let cost = BarNumber { ratio: Some(cost / step), ..BarNumber::new(ui, ("STEP", &value), ("", false), tip, color) };
     let clock = &session.playback.clock;
-    let (word, color) = match clock.lags() {
-        true => (tr("slower than asked").into(), palette.error),
-        false => (Cow::default(), palette.text),
-    };
+    let (remark, color) = if clock.lags() { (tr("slower than asked"), palette.error) } else { ("", palette.text) };
     let value = match clock.factor {
         Some(factor) => format!("× {}", fraction(factor)),
         None if session.is_running() => UNKNOWN.to_owned(),
         None => tr("paused").to_owned(),
     };
     let tip = "Simulated seconds per second; fewer than requested if the machine cannot keep up";
-    let speed = BarNumber { word, ..BarNumber::new("SPEED", value, tr(tip), color) };
+    let speed = BarNumber::new(ui, ("SPEED", &value), (remark, false), tr(tip), color);
     let drift = drift(session.simulation());
     let color = if drift.is_some_and(|drift| drift.abs() > 0.05) { palette.warning } else { palette.text };
     let value = drift.map_or_else(|| UNKNOWN.to_owned(), drift_text);
-    [cost, speed, BarNumber::new("DRIFT", value, tr(DRIFT_TIP), color)]
-}
-
-/// Space between the parts of an entry, points, and size of its bar.
-const GAP: f32 = 6.0;
-const BAR: Vec2 = vec2(56.0, 6.0);
-
-struct Texts {
-    entry: BarNumber,
-    title: Arc<Galley>,
-    number: Arc<Galley>,
-    number_width: f32,
-    remark: Option<Arc<Galley>>,
-}
-
-impl Texts {
-    fn of(ui: &Ui, palette: &Palette, entry: BarNumber, wide: bool) -> Self {
-        let painter = ui.painter();
-        let small = |text: &str, color| painter.layout_no_wrap(text.to_owned(), FontId::proportional(SMALL), color);
-        let remark_color = match [palette.warning, palette.large, palette.error].contains(&entry.color) {
-            true => entry.color,
-            false if entry.is_doubtful => palette.warning,
-            false => palette.secondary,
-        };
-        let number = painter.layout_no_wrap(entry.value.clone(), FontId::proportional(HEADLINE), entry.color);
-        Self {
-            title: small(tr(entry.name), palette.secondary),
-            // A minimum width keeps what follows in place when the number of digits changes.
-            number_width: number.size().x.max(if wide { 62.0 } else { 0.0 }),
-            number,
-            remark: (!entry.word.is_empty()).then(|| small(&entry.word, remark_color)),
-            entry: BarNumber { ratio: entry.ratio.filter(|_| wide), ..entry },
-        }
-    }
-
-    /// Returns the width without the remark, points.
-    fn width(&self) -> f32 {
-        let bar = if self.entry.ratio.is_some() { BAR.x + GAP } else { 0.0 };
-        self.title.size().x + GAP + self.number_width + bar
-    }
-
-    fn remark_width(&self) -> f32 {
-        self.remark.as_ref().map_or(0.0, |remark| remark.size().x + GAP)
-    }
-}
-
-/// Shows a name, its number, its bar and, in its slot if there is one, its remark. The width of a slot is in points.
-fn number(ui: &mut Ui, palette: &Palette, texts: Texts, slot: Option<f32>) {
-    let remark_width = texts.remark_width();
-    let size = vec2(texts.width() + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
-    let Texts { entry: BarNumber { name, value, word, tip, color, ratio, .. }, title, number, number_width, remark } =
-        texts;
-    let remark = remark.filter(|_| slot.is_some());
-    let word = if remark.is_some() { word.as_ref() } else { "" };
-    let name = tr(name);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let middle = rect.center().y;
-    let mut x = rect.left();
-    let mut put = |galley: Arc<Galley>, width: f32, bold: bool| {
-        let at = pos2(x, middle - 0.5 * galley.size().y);
-        match bold {
-            true => semibold(ui.painter(), at, &galley, color),
-            false => ui.painter().galley(at, galley, color),
-        }
-        x += width + GAP;
-    };
-    let title_width = title.size().x;
-    put(title, title_width, false);
-    put(number, number_width, true);
-    if let Some(remark) = remark {
-        put(remark, remark_width - GAP, false);
-    }
-    if let Some(ratio) = ratio {
-        let bar = Rect::from_min_size(pos2(x, middle - 0.5 * BAR.y), BAR);
-        ui.painter().rect_filled(bar, 2.0, palette.line);
-        let end = bar.left() + bar.width() * (0.5 * ratio).clamp(0.0, 1.0) as f32;
-        ui.painter().rect_filled(Rect::from_min_max(bar.min, pos2(end, bar.bottom())), 2.0, color);
-        ui.painter().vline(bar.center().x, bar.y_range().expand(4.0), Stroke::new(1.5, palette.secondary));
-    }
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} {value} {word}").trim_end()));
-    response.on_hover_text(tip);
+    [cost, speed, BarNumber::new(ui, ("DRIFT", &value), ("", false), tr(DRIFT_TIP), color)]
 }
 
 /// Returns the text of the current phase of a background solve.
