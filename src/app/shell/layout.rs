@@ -58,7 +58,13 @@ impl Lab {
         }
         match self.desk.view.mode {
             Mode::Explore => self.plots(ui, &mut actions),
-            Mode::Learn => self.card_row(ui, &mut actions),
+            Mode::Learn => {
+                // Escape closes the panel over the body and the explanation first.
+                let view = &self.desk.view;
+                let is_covered = view.help || view.why || view.narrow && view.sheet;
+                let keys = !self.has_dialog() && !is_covered;
+                self.learn.show(ui, &self.desk.session, keys, &mut actions);
+            }
             Mode::Compare => {
                 let (compare, input) = self.compared();
                 compare.bars(ui, &input);
@@ -223,14 +229,6 @@ impl Lab {
             chosen: measure.budget.chosen(session.scene()),
         };
         (compare, input)
-    }
-
-    fn card_row(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        // Escape closes the panel over the body and the explanation first.
-        let view = &self.desk.view;
-        let is_covered = view.help || view.why || view.narrow && view.sheet;
-        let keys = !self.has_dialog() && !is_covered;
-        self.learn.show(ui, &self.desk.session, keys, actions);
     }
 
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {

@@ -67,10 +67,6 @@ impl BarNumber {
         self.texts[0].size().x + GAP + self.number_width(wide) + bar
     }
 
-    fn remark_width(&self) -> f32 {
-        if self.texts[2].is_empty() { 0.0 } else { self.texts[2].size().x + GAP }
-    }
-
     /// Shows the name, the number, its bar if the window is `wide` and, in its slot if there is one, its remark. The width of a
     /// slot is in points.
     fn show(self, ui: &mut Ui, wide: bool, slot: Option<f32>) {
@@ -127,7 +123,8 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: 
                 let gaps = ui.spacing().item_spacing.x * entries.len().saturating_sub(1) as f32;
                 let mut room = ui.available_width() - gaps - entries.iter().map(|entry| entry.width(wide)).sum::<f32>();
                 for entry in entries {
-                    let (is_error, remark) = (entry.name == ERROR, entry.remark_width());
+                    let is_error = entry.name == ERROR;
+                    let remark = if entry.texts[2].is_empty() { 0.0 } else { entry.texts[2].size().x + GAP };
                     let has_remark = remark <= room;
                     let slot = if is_error && wide { ERROR_REMARK.max(remark) } else { remark };
                     let slot = if slot <= room { slot } else { remark };

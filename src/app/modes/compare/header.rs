@@ -227,31 +227,17 @@ fn close_button(ui: &mut Ui, number: usize) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), close).inner
 }
 
-/// Areas of the panes and of the key.
-pub(super) struct Grid {
-    /// Area of every pane.
-    pub cells: Vec<Rect>,
-    /// Area of the key under the panes.
-    pub key: Rect,
-    /// Height of the headers, points.
-    header: f32,
-}
-
-impl Grid {
-    /// Divides a rectangle among `panes` panes, whose headers have lines for `probes` probes, side by side or in two rows.
-    pub(super) fn new(whole: Rect, panes: usize, probes: usize) -> Self {
-        let header = HEADER + PROBE * probes as f32;
-        let key = Rect::from_min_max(pos2(whole.left(), whole.bottom() - KEY), whole.max);
-        let rest = Rect::from_min_max(whole.min, key.right_top());
-        Self { cells: cells(rest, panes), key, header }
-    }
-
-    /// Returns the area of the body in a cell, under the header.
-    pub(super) fn body_place(&self, cell: Rect) -> Rect {
-        let place = Rect::from_min_max(pos2(cell.left(), (cell.top() + self.header).min(cell.bottom())), cell.max);
+/// Divides a rectangle into the headers and the bodies of `panes` panes, and the key under them. Headers have lines for
+/// `probes` probes.
+pub(super) fn divide(whole: Rect, panes: usize, probes: usize) -> (Vec<[Rect; 2]>, Rect) {
+    let header = HEADER + PROBE * probes as f32;
+    let key = whole.with_min_y(whole.bottom() - KEY);
+    let split = |cell: Rect| {
         // Rounded to pixels, so that the render pass and the painter have the same centre.
-        place.round_ui()
-    }
+        let body = cell.with_min_y((cell.top() + header).min(cell.bottom())).round_ui();
+        [Rect::from_min_max(cell.min, body.right_top()), body]
+    };
+    (cells(whole.with_max_y(key.top()), panes).into_iter().map(split).collect(), key)
 }
 
 /// Returns the areas of `panes` panes in equal columns, side by side or in two rows.

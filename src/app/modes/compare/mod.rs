@@ -3,7 +3,6 @@
 
 use egui::Panel;
 
-use self::header::Grid;
 use self::setting::PANES;
 use super::*;
 use crate::app::session::clock::RealTimeClock;
@@ -335,9 +334,9 @@ impl Compare {
         let range = input.view.fixed_range.or(common).unwrap_or_default();
         let whole = ui.available_rect_before_wrap();
         let probes = if self.in_motion { 0 } else { header::shown_probes(input.scene, input.view) };
-        let grid = Grid::new(whole, self.panes.len(), probes);
-        for (pane, cell) in self.panes.iter_mut().zip(&grid.cells) {
-            (pane.view.body.range, pane.view.rect) = (range, grid.body_place(*cell));
+        let (places, key) = header::divide(whole, self.panes.len(), probes);
+        for (pane, [_, body]) in self.panes.iter_mut().zip(&places) {
+            (pane.view.body.range, pane.view.rect) = (range, *body);
         }
         let reference = input.reference.filter(|_| input.view.exact);
         let exact = bars::magnified_outline(reference, self.magnification);
@@ -345,11 +344,11 @@ impl Compare {
         if self.in_motion {
             self.is_timing = !ui.input(|i| i.pointer.any_down()) && self.request_times(ui.ctx());
         }
-        let interaction = self.show_panes(ui, &grid, input, &exact);
+        let interaction = self.show_panes(ui, &places, input, &exact);
         if !self.in_motion {
             self.show_values(ui);
         }
-        header::key(ui, grid.key, input.view, (range, self.magnification), self.in_motion);
+        header::key(ui, key, input.view, (range, self.magnification), self.in_motion);
         ui.advance_cursor_after_rect(whole);
         interaction
     }
@@ -359,13 +358,12 @@ impl Compare {
     fn show_panes(
         &mut self,
         ui: &mut Ui,
-        grid: &Grid,
+        places: &[[Rect; 2]],
         input: &CompareInput<'_>,
         exact: &[Vec<Vector2<f64>>],
     ) -> Interaction {
         let (mut changes, mut interaction) = (Vec::new(), Interaction::default());
-        for (number, cell) in grid.cells.iter().enumerate() {
-            let header = Rect::from_min_max(cell.min, grid.body_place(*cell).right_top());
+        for (number, [header, _]) in places.iter().enumerate() {
             let inner = UiBuilder::new().max_rect(header.shrink2(vec2(8.0, 3.0))).id_salt(("pane", number));
             let shown = ui.scope_builder(inner, |ui| {
                 ui.set_clip_rect(header.intersect(ui.clip_rect()));
