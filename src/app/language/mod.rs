@@ -26,7 +26,6 @@ pub enum Language {
 
 impl Language {
     /// Returns the language's name in that language.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::English => "English",
@@ -35,7 +34,6 @@ impl Language {
     }
 
     /// Returns the language that the language button switches to.
-    #[must_use]
     pub fn other(self) -> Self {
         match self {
             Self::English => Self::Chinese,

@@ -25,7 +25,6 @@ impl Lab {
     }
 
     /// Returns the number of the displayed card, from 1, and the number of cards; `None` in other modes.
-    #[must_use]
     pub fn card(&self) -> Option<(usize, usize)> {
         self.aside.as_ref().map(|_| (self.learn.card + 1, learn::CARDS.len()))
     }
@@ -51,13 +50,11 @@ impl Lab {
     }
 
     /// Returns the panes that are compared.
-    #[must_use]
     pub fn panes(&self) -> &[Pane] {
         &self.desk.compare.panes
     }
 
     /// Returns the study of the scene, if there is one, and `true` if measurements are in progress.
-    #[must_use]
     pub fn study(&self) -> (Option<&Study>, bool) {
         (self.desk.measure.budget.study(), self.desk.measure.budget.runs())
     }
@@ -68,38 +65,32 @@ impl Lab {
     }
 
     /// Returns the scene with its edits.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         self.desk.session.scene()
     }
 
     /// Returns the displayed simulation.
-    #[must_use]
     pub fn simulation(&self) -> &Simulation {
         self.desk.session.simulation()
     }
 
     /// Returns the area of the view in the window, points.
-    #[must_use]
     pub fn view_rect(&self) -> Rect {
         self.desk.viewport.view.rect
     }
 
     /// Returns the tips of the load arrows in the window, points, with the index of each load in the scene.
-    #[must_use]
     pub fn arrow_tips(&self) -> Vec<(usize, Pos2)> {
         let arrows = self.desk.viewport.arrows(&self.content());
         arrows.iter().map(|arrow| (arrow.load, arrow.tip())).collect()
     }
 
     /// Returns the start points of force arrows, and the centres of moment arrows, in the window, points.
-    #[must_use]
     pub fn arrow_feet(&self) -> Vec<Pos2> {
         self.desk.viewport.arrows(&self.content()).iter().map(|arrow| arrow.from).collect()
     }
 
     /// Returns the camera of the last [`Self::ui`].
-    #[must_use]
     pub fn camera(&self) -> Camera {
         match self.desk.view.mode {
             Mode::Compare => self.desk.compare.camera(),
@@ -108,7 +99,6 @@ impl Lab {
     }
 
     /// Returns the title of the window: the scene's name, an asterisk if it has been edited, and the name of its file.
-    #[must_use]
     pub fn title(&self) -> String {
         let session = &self.desk.session;
         let edited = if session.is_edited() && self.story.is_none() { "*" } else { "" };
@@ -124,7 +114,6 @@ impl Lab {
     }
 
     /// Returns the pinned material point, whose values are shown over the body.
-    #[must_use]
     pub fn probed(&self) -> Option<MaterialPoint> {
         self.desk.viewport.probe
     }
@@ -141,7 +130,6 @@ impl Lab {
     }
 
     /// Returns `true` while a displayed result of the scene is being computed in the background.
-    #[must_use]
     pub fn is_computing(&self) -> bool {
         let Desk { session, view, measure, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
@@ -175,7 +163,6 @@ impl Lab {
     }
 
     /// Returns the settings to be saved.
-    #[must_use]
     pub fn settings(&self, ctx: &Context) -> Settings {
         let theme = match ctx.options(|options| options.theme_preference) {
             egui::ThemePreference::Dark => Some(ThemeChoice::Dark),
@@ -193,7 +180,6 @@ impl Lab {
     }
 
     /// Returns the input of the body's render pass, as of the last [`Self::ui`].
-    #[must_use]
     pub fn frame(&self) -> Frame<'_> {
         self.desk.viewport.view.body.frame(self.desk.view.wireframe)
     }

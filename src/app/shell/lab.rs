@@ -126,7 +126,6 @@ pub struct Lab {
 
 impl Lab {
     /// Creates a lab with `scene`, iterating from rest.
-    #[must_use]
     pub fn new(source: Source, scene: Scene, simulation: Simulation) -> Self {
         Self {
             desk: Desk::new(Session::new(source, scene, simulation)),
@@ -183,7 +182,6 @@ impl Lab {
     }
 
     /// Returns `true` if the next frame changes the body.
-    #[must_use]
     pub fn iterates(&self) -> bool {
         if self.compares_motions() {
             return self.desk.session.is_running() && self.desk.compare.goes_on() && !self.desk.compare.is_timing;

@@ -55,13 +55,11 @@ impl Default for Settings {
 
 impl Settings {
     /// Returns the path of this user's settings; `None` if the system has no folder for them.
-    #[must_use]
     pub fn file() -> Option<PathBuf> {
         platform::settings::file()
     }
 
     /// Reads the settings from a file; returns the defaults if there is none, and with a message if it cannot be read.
-    #[must_use]
     pub fn load(file: &Path) -> (Self, Option<String>) {
         let read = match platform::settings::read(file) {
             Ok(text) => toml::from_str(&text).map_err(|error| error.message().to_owned()),
@@ -104,14 +102,12 @@ impl Settings {
     }
 
     /// Returns the size of the window, points.
-    #[must_use]
     pub fn size(&self) -> [f32; 2] {
         let [width, height] = self.size;
         if SIDES.contains(&width) && SIDES.contains(&height) { self.size } else { Self::default().size }
     }
 
     /// Returns the field that colours the body.
-    #[must_use]
     pub fn color(&self) -> Field {
         Field::ALL.into_iter().find(|field| field.name() == self.color).unwrap_or_default()
     }

@@ -102,7 +102,6 @@ impl Lab {
     }
 
     /// Returns the index of the story's current part, and its caption; `None` if no story is told.
-    #[must_use]
     pub fn story(&self) -> Option<(usize, &'static str)> {
         let part = self.story.as_ref()?.part;
         Some((part, PARTS.get(part)?.caption))

@@ -47,7 +47,6 @@ impl Pane {
 
     /// Returns the computing time of the solve from rest, or of a motion's frame at 60 Hz, s; `None` until it has been
     /// measured.
-    #[must_use]
     pub fn seconds(&self) -> Option<f64> {
         self.cost.get(&self.timed_scene()?).copied()
     }
@@ -76,19 +75,16 @@ impl Pane {
 
     /// Returns the values of the displayed field at both ends of the colour map, as of the last
     /// [`crate::app::Lab::ui`].
-    #[must_use]
     pub fn color_range(&self) -> [f64; 2] {
         self.view.body.range
     }
 
     /// Returns the area of the body in the window, points, as of the last [`crate::app::Lab::ui`].
-    #[must_use]
     pub fn place(&self) -> Rect {
         self.view.rect
     }
 
     /// Returns the simulation; `None` while it is solved in the background.
-    #[must_use]
     pub fn simulation(&self) -> Option<&Simulation> {
         Some(&self.run.model()?.simulation)
     }

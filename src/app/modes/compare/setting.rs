@@ -57,7 +57,6 @@ pub enum PaneSettingError {
 
 impl PaneSetting {
     /// Returns the settings with the scene's own values filled in.
-    #[must_use]
     pub fn of(&self, scene: &Scene) -> Self {
         Self {
             method: Some(self.method.unwrap_or(scene.solver.method)),
@@ -68,7 +67,6 @@ impl PaneSetting {
     }
 
     /// Returns the scene with these settings.
-    #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut own = scene.clone();
         own.set_element(self.element.unwrap_or(scene.element()));

@@ -321,7 +321,6 @@ fn not_triangles(ui: &mut Ui, text: &str, learn: &Learn, actions: &mut Vec<Actio
 }
 
 /// Returns the number of cards of the mode Learn.
-#[must_use]
 pub fn card_count() -> usize {
     CARDS.len()
 }
