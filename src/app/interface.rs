@@ -3,13 +3,13 @@
 pub(super) use std::borrow::Cow;
 
 pub(super) use egui::{
-    Align, Align2, Button, Color32, ComboBox, Context, Event, FontId, Frame, Id, Key, Label, Layout, Margin, Modal,
-    Modifiers, Painter, Pos2, ProgressBar, Rect, Response, RichText, Role, ScrollArea, Sense, Shape, Stroke,
-    StrokeKind, TextEdit, Ui, UiBuilder, Vec2, Visuals, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, CentralPanel, Color32, ComboBox, Context, Event, FontId, Frame, Id, Key, Label, Layout,
+    Margin, Modal, Modifiers, Painter, Panel, Pos2, ProgressBar, Rect, Response, RichText, Role, ScrollArea, Sense,
+    Shape, Stroke, StrokeKind, TextEdit, Ui, UiBuilder, Vec2, Visuals, WidgetInfo, pos2, vec2,
 };
 
 pub(super) use crate::app::action::Action;
-pub(super) use crate::app::language::{area_text, sentence, spaced};
+pub(super) use crate::app::language::{area_text, sentence, signed_percent, spaced};
 pub(super) use crate::app::platform::IS_PAGE;
 pub(super) use crate::app::prelude::*;
 pub(super) use crate::app::session::Session;

@@ -8,7 +8,10 @@ pub(crate) mod motion_plot;
 pub(crate) mod section_plot;
 
 use crate::app::interface::*;
+use crate::app::session::facts::{self, Curve};
+use crate::app::task::keyed::Keyed;
+use crate::app::viewport::projection::Projection;
 use crate::app::widgets::chart::{self, ChartPainter};
-use crate::plot::{self, Anchor, ChartAxis, DrawTarget, Text, solid};
+use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
 use crate::study::Setting;
 use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};

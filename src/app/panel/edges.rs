@@ -1,10 +1,8 @@
 //! Loads and supports in the panel: the edge or point of each, and buttons that add and remove them.
 
-use egui::DragValue;
 use std::cell::RefCell;
 
 use super::*;
-use crate::app::viewport::arrow::LoadRanges;
 use crate::app::viewport::objects::{
     self, Object, ObjectChange, acts_at_point, can_carry_moment, force_by_hand, is_free, support_by_hand,
 };
@@ -135,7 +133,7 @@ fn coordinates(
             for (name, value, limit, tip) in fields.into_iter().chain(wide) {
                 let label = ui.label(name);
                 let first = FirstText::of(ui, ui.scope_id().with(name), editable(*value, "m"));
-                let field = DragValue::new(value)
+                let field = egui::DragValue::new(value)
                     .speed(0.0)
                     .update_while_editing(false)
                     .custom_formatter(|v, _| editable(v, "m"))

@@ -1,7 +1,7 @@
 //! Panel section of force, gravity and moment.
 
 use super::*;
-use crate::app::viewport::arrow::{DOWN, LoadRanges, polar_form, vector};
+use crate::app::viewport::arrow::{polar_form, vector};
 
 /// Gravitational acceleration on earth, m/s².
 const EARTH: f64 = 9.81;

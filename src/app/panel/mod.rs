@@ -2,11 +2,10 @@
 //! visible; the others are in sections whose headers summarize their content.
 
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
-use egui::scroll_area::ScrollBarVisibility;
 use egui::text::{LayoutJob, TextWrapping};
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::DOWN;
+use crate::app::viewport::arrow::{DOWN, LoadRanges};
 
 mod body;
 pub(crate) mod edges;
@@ -64,7 +63,7 @@ pub(super) fn show(ui: &mut Ui, panel: &mut Panel<'_>, has_result: bool) {
     panel.view.edge = None;
     let (session, scene) = (panel.session, panel.scene);
     let scroll = ScrollArea::vertical().auto_shrink([false, false]);
-    scroll.scroll_bar_visibility(ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
+    scroll.scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::VisibleWhenNeeded).show(ui, |ui| {
         if !scene.about.is_empty() {
             let about = spaced(RichText::new(tr(&scene.about)), SMALL).small().weak();
             ui.add(Label::new(about).wrap());

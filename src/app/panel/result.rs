@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::app::diagnosis::{DRIFT_TIP, drift, drift_text, error_tip, errors, load_text, rho, stability, state_text};
-use crate::app::language::signed_percent;
 use crate::app::session::clock::fraction;
 use crate::study::rho_text;
 

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use egui::style::ScrollAnimation;
 use egui::text::TextWrapping;
 use egui::{ColorImage, Image, TextureHandle, TextureOptions};
 
@@ -103,7 +102,7 @@ impl Gallery {
         });
         if !self.is_open {
             // The list would open where it was last scrolled to.
-            ui.scroll_to_rect_animation(top.response.rect, Some(Align::TOP), ScrollAnimation::none());
+            ui.scroll_to_rect_animation(top.response.rect, Some(Align::TOP), egui::style::ScrollAnimation::none());
         }
         // If the gallery was opened with a key, an entry gets the keyboard focus.
         let by_key = ui.input(|i| !i.pointer.any_down() && !i.pointer.any_released());

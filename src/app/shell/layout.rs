@@ -1,7 +1,5 @@
 //! Layout of the window: bars, panel, plots, the body or the compared panes, and everything over them.
 
-use egui::{CentralPanel, Panel};
-
 use super::*;
 use crate::app::diagnosis;
 use crate::app::language;

@@ -1,7 +1,5 @@
 //! Messages over the view: notices of the session, warnings and offers.
 
-use egui::Panel;
-
 use super::*;
 use crate::app::panel::edges;
 use crate::app::session::Notice;

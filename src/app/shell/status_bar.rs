@@ -1,7 +1,5 @@
 //! Status bar along the bottom: the main numbers of the result, and the button of the drawer.
 
-use egui::Galley;
-
 use crate::app::diagnosis::{
     DRIFT_TIP, doubt, drift, drift_text, error_color, error_text, error_tip, errors, is_large, is_without_reference,
     load_text, rho, rho_number,
@@ -26,7 +24,7 @@ const BAR: Vec2 = vec2(56.0, 6.0);
 struct BarNumber {
     name: &'static str,
     /// Name, number, and the remark after it, which is empty if there is none.
-    texts: [Arc<Galley>; 3],
+    texts: [Arc<egui::Galley>; 3],
     tip: String,
     color: Color32,
     /// Ratio of the number to its limit, drawn as a bar with the limit in its middle.

@@ -1,8 +1,6 @@
 //! Story of the first start: in five parts the default scene shows linear theory, the limit of the warped iteration,
 //! Newton's method and another element. It ends as it began: with that scene, or with the card of Learn that was open.
 
-use egui::TouchPhase;
-
 use super::*;
 use crate::app::platform::page;
 use crate::app::shell::lab::Story;
@@ -153,7 +151,7 @@ impl Lab {
         let is_input = |event: &Event| match event {
             Event::Key { pressed, repeat, .. } => *pressed && !repeat,
             Event::PointerButton { pressed, .. } => *pressed,
-            Event::Touch { phase, .. } => *phase == TouchPhase::Start,
+            Event::Touch { phase, .. } => *phase == egui::TouchPhase::Start,
             Event::MouseWheel { .. } | Event::Zoom(_) | Event::Paste(_) | Event::AccessKitActionRequest(_) => true,
             _ => false,
         };

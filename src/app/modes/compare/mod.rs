@@ -1,19 +1,15 @@
 //! Comparison of two to four settings side by side, at rest or in motion: one load, one clock, one camera, one colour
 //! range.
 
-use egui::Panel;
-
 use self::setting::PANES;
 use super::*;
 use crate::app::session::clock::RealTimeClock;
-use crate::app::session::facts::Live;
 use crate::app::session::run::{FrameConditions, Run};
 use crate::app::task::solve::Equations;
 use crate::app::task::thread::QUIET_POLL;
 use crate::app::viewport::bars;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::pointer::Interaction;
-use crate::app::viewport::projection::Projection;
 use crate::state::largest;
 
 mod header;
@@ -39,7 +35,7 @@ pub(crate) struct CompareInput<'a> {
     /// Reference solution of the load, or the one that follows it.
     pub reference: Option<&'a Reference>,
     /// Reference solution that follows the load, if errors are measured against it.
-    pub live: Option<&'a Live>,
+    pub live: Option<&'a facts::Live>,
     /// Fastest measured setting within the limits.
     pub chosen: Option<Setting>,
 }

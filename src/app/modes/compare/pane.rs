@@ -5,10 +5,8 @@ use std::collections::VecDeque;
 use super::*;
 use crate::app::diagnosis::equilibrium_text;
 use crate::app::session::WILD;
-use crate::app::session::facts::CostFact;
 use crate::app::session::fallback::Fallback;
 use crate::app::session::run::{Condition, Run};
-use crate::app::task::keyed::Keyed;
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::arrow::LoadedBody;
 use crate::app::viewport::body_view::BodyView;
@@ -34,7 +32,7 @@ pub struct Pane {
     fallback: Fallback,
     /// `true` while the load is dragged, and the pane iterates as fast as it can.
     pub(super) is_dragged: bool,
-    cost: Keyed<CostFact>,
+    cost: Keyed<facts::CostFact>,
     pub(super) view: BodyView,
     /// Colour range of this pane alone; all panes are drawn with a common range that contains it.
     pub(super) range: Option<[f64; 2]>,

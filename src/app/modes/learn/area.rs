@@ -1,7 +1,6 @@
 //! Card of the growth of the body's area.
 
 use super::*;
-use crate::app::language::signed_percent;
 
 /// Largest force of the slider, N.
 pub(super) const LARGEST_FORCE: f64 = 4e4;

@@ -1,7 +1,5 @@
 //! Exploded view: the elements are drawn apart from each other, each rotated back by its Rᵀ onto its shape at rest.
 
-use egui::Slider;
-
 use super::*;
 
 /// Distances of the element centres from the body's centre in the exploded view, relative to those at rest.
@@ -52,7 +50,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     ui.horizontal(|ui| {
         ui.label(tr("As it is"));
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
-        let slider = ui.add(Slider::new(&mut learn.rotation_part, 0.0..=1.0).show_value(false));
+        let slider = ui.add(egui::Slider::new(&mut learn.rotation_part, 0.0..=1.0).show_value(false));
         let label = ui.label(tr("Rotated back"));
         let tip = tr("From the bent beam to its triangles, each rotated back by its own R");
         slider.labelled_by(label.id).on_hover_text(tip);

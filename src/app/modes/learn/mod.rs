@@ -2,14 +2,12 @@
 //! time. The user's own scene is put aside, and restored when the mode ends.
 
 use cards::CardDisplay;
-use egui::Panel;
 use frames::{angle_text, paint_picked};
 use nalgebra::{DMatrix, Matrix2};
 use triangle::{Triangle, assembled};
 
 use super::*;
 use crate::app::viewport::body_mesh::BodyMesh;
-use crate::app::viewport::projection::Projection;
 use crate::app::widgets::buttons::at_right;
 use crate::rotation::Rotation;
 

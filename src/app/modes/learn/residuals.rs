@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::app::diagnosis::rho_number;
-use crate::plot::ChartFrame;
 
 /// Shows the buttons that iterate, and the residuals.
 pub(super) fn steps(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -4,8 +4,6 @@ use super::*;
 use crate::app::diagnosis::drift_text;
 use crate::app::language::bound_percent;
 use crate::app::session::clock::FRAMES;
-use crate::app::session::facts::StudyFact;
-use crate::app::task::keyed::Keyed;
 use crate::exact_beam::error_percent;
 use crate::plot::{SMALLEST_ERROR, Stroke, StudyChart, mark};
 use crate::scene::limits::BUDGET_MS;
@@ -14,7 +12,7 @@ use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
 /// The study of the scene, and the largest error and time that a setting may have.
 #[derive(Debug)]
 pub(crate) struct Budget {
-    study: Keyed<StudyFact>,
+    study: Keyed<facts::StudyFact>,
     /// Scene that is being measured.
     measured: Option<Scene>,
     /// `true` if the study is that of a scene which was open before.

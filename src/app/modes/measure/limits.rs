@@ -1,10 +1,7 @@
 //! Loads up to which each method and element holds, with the load of the scene on the same axis; of a motion, time steps
 //! up to which each integrator does.
 
-use egui::EventFilter;
-
 use super::*;
-use crate::app::session::facts::with_default_methods;
 use crate::plot::LimitsChart;
 use crate::study::limits::{self, MethodLimits, Rating, Strip, load_text};
 
@@ -112,7 +109,7 @@ fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
     }
     let moves = scene.analysis == Analysis::Dynamic;
     let alike = |scene: &Scene| {
-        let mut own = with_default_methods(scene.clone());
+        let mut own = facts::with_default_methods(scene.clone());
         own.solver.accept_after = 0;
         if moves {
             own.dynamics.time_step = base.dynamics.time_step;
@@ -242,7 +239,7 @@ impl<'a> StripChart<'a> {
         if !response.has_focus() {
             return None;
         }
-        let arrows = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+        let arrows = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
         let [less, more] = [egui::Key::ArrowLeft, egui::Key::ArrowRight].map(|key| ui.input(|i| i.num_presses(key)));
         let change = STEP.powf(more as f64 - less as f64);

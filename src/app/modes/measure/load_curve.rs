@@ -2,7 +2,6 @@
 //! which linear theory departs. For any other scene it shows the load path, with unstable parts dashed.
 
 use super::*;
-use crate::app::session::facts::Curve;
 use crate::format::engineering_pair_among;
 use crate::study::path_chart::{self, Ordinate};
 use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};

@@ -6,7 +6,6 @@ pub(crate) mod load_curve;
 
 use self::budget::Budget;
 use super::*;
-use crate::app::session::facts;
 
 /// State of Measure.
 #[derive(Debug, Default)]
