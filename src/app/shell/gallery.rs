@@ -49,12 +49,6 @@ pub(crate) struct Gallery {
     is_open: bool,
 }
 
-impl std::fmt::Debug for Gallery {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.is_open.fmt(f)
-    }
-}
-
 impl Gallery {
     /// Shows the button with the scene's name, which opens the gallery.
     pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -95,7 +95,6 @@ pub(super) struct Story {
 }
 
 /// Complete content of a window.
-#[derive(Debug)]
 pub struct Lab {
     /// Desk of the scene, or of the mode Learn.
     pub desk: Desk,
