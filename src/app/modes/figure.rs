@@ -51,7 +51,6 @@ pub(crate) fn plot(ui: &mut Ui, figure: &Figure, corners: [[f64; 2]; 2]) -> (Cha
     (painter, axes)
 }
 
-/// Shows the menu that exports a figure.
 pub(crate) fn export_menu(ui: &mut Ui, figure: &Figure, actions: &mut Vec<Action>) {
     ui.menu_button(tr("Export"), |ui| {
         for (extension, tip, text) in FORMATS {

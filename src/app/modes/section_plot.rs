@@ -118,7 +118,6 @@ impl SectionPlot {
         self.cuts.as_ref().filter(|cuts| cuts.is_of(simulation))
     }
 
-    /// Returns `true` while sections are being computed.
     pub(crate) fn is_pending(&self) -> bool {
         self.computing.is_some()
     }

@@ -5,14 +5,12 @@ use crate::app::interface::*;
 /// Largest number of recent files that are offered.
 const RECENT: usize = 4;
 
-/// Purpose of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     Open,
     Save,
 }
 
-/// State of the dialog.
 #[derive(Debug)]
 pub(crate) struct FileDialog {
     pub purpose: Purpose,

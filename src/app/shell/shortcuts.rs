@@ -34,7 +34,6 @@ pub(crate) fn shortcuts() -> impl Iterator<Item = &'static Shortcut> {
     SHORTCUTS.iter().filter(|shortcut| (shortcut.act)().is_available())
 }
 
-/// All shortcuts.
 const SHORTCUTS: &[Shortcut] = &[
     key(Key::Space, "Run or pause", || Action::ToggleRun),
     key(Key::N, "One iteration, or one time step", || Action::Step),

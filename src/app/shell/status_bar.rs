@@ -20,7 +20,6 @@ const ERROR_REMARK: f32 = 178.0;
 const GAP: f32 = 6.0;
 const BAR: Vec2 = vec2(56.0, 6.0);
 
-/// Entry of the bar.
 struct BarNumber {
     name: &'static str,
     /// Name, number, and the remark after it, which is empty if there is none.

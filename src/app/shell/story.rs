@@ -20,7 +20,6 @@ struct Part {
 const PAST: f64 = 1.8;
 const FAR: f64 = 2.5;
 
-/// All parts.
 const PARTS: [Part; 5] = [
     Part {
         caption: "Linear theory (orange) grows; warped keeps its area.",

@@ -22,7 +22,6 @@ pub use setting::{PaneSetting, PaneSettingError, parse_panes};
 /// Time for the iterations of all panes between two frames.
 const WORK: Duration = Duration::from_millis(12);
 
-/// Input of a comparison.
 pub(crate) struct CompareInput<'a> {
     /// Session of the panel.
     pub session: &'a Session,
@@ -116,7 +115,6 @@ impl Compare {
         self.panes.iter().any(|pane| pane.setting.apply(scene) == *scene)
     }
 
-    /// Returns the camera of all panes.
     pub(crate) fn camera(&self) -> Camera {
         self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, |controller| controller.shown)
     }

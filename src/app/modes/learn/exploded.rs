@@ -64,16 +64,15 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     let s = triangle.stretch;
     ui.label(fill!(
         "strain ε: along %{along}, across %{across}, shear γ %{shear}",
-        along = signed_percent(s.m11 - 1.0),
-        across = signed_percent(s.m22 - 1.0),
-        shear = signed_percent(2.0 * s.m12),
+        along = signed_strain(s.m11 - 1.0),
+        across = signed_strain(s.m22 - 1.0),
+        shear = signed_strain(2.0 * s.m12),
     ));
     let text = tr("Line: the shape at rest. Colour: the largest strain; K turns strain into force.");
     ui.label(RichText::new(text).small().weak());
 }
 
-/// Formats a strain as a signed percentage.
-fn signed_percent(strain: f64) -> String {
+fn signed_strain(strain: f64) -> String {
     let sign = if strain < 0.0 { "\u{2212}" } else { "+" };
     format!("{sign}{}", percent(100.0 * strain.abs()))
 }

@@ -54,7 +54,6 @@ impl Budget {
         }
     }
 
-    /// Returns `true` while a study is in progress.
     pub(crate) fn runs(&self) -> bool {
         self.measured.is_some()
     }
@@ -76,7 +75,6 @@ impl Budget {
         (self.measured, self.is_hidden) = (None, false);
     }
 
-    /// Polls the study in progress.
     pub(crate) fn poll(&mut self, ctx: &Context) {
         self.measured.take_if(|scene| !self.study.request(scene));
         if self.runs() {
@@ -124,7 +122,6 @@ impl Budget {
     }
 }
 
-/// Content of the mode.
 struct BudgetView<'a> {
     scene: &'a Scene,
     study: Option<&'a Study>,
@@ -151,7 +148,6 @@ impl BudgetView<'_> {
         self.study.map_or(f64::INFINITY, |study| study.error_bound(m))
     }
 
-    /// Returns the action that applies a measured setting.
     fn apply(&self, m: &Measurement) -> Action {
         Action::Edit("Method", Box::new(m.apply(self.scene)))
     }

@@ -7,7 +7,6 @@ pub(crate) mod load_curve;
 use self::budget::Budget;
 use super::*;
 
-/// State of Measure.
 #[derive(Debug, Default)]
 pub(crate) struct Measure {
     /// Scene whose limits are shown.
