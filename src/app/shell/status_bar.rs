@@ -72,7 +72,7 @@ impl BarNumber {
         let size = vec2(self.width(wide) + slot.unwrap_or(0.0), ui.spacing().interact_size.y);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let (middle, mut x) = (rect.center().y, rect.left());
-        let shown = if slot.is_some() && !self.texts[2].is_empty() { 3 } else { 2 };
+        let shown = if slot.is_some() && !self.texts[2].text().is_empty() { 3 } else { 2 };
         for (i, (galley, width)) in self.texts.iter().zip(widths).enumerate().take(shown) {
             let at = pos2(x, middle - 0.5 * galley.size().y);
             match i {
@@ -121,7 +121,7 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: 
                 let mut room = ui.available_width() - gaps - entries.iter().map(|entry| entry.width(wide)).sum::<f32>();
                 for entry in entries {
                     let is_error = entry.name == ERROR;
-                    let remark = if entry.texts[2].is_empty() { 0.0 } else { entry.texts[2].size().x + GAP };
+                    let remark = if entry.texts[2].text().is_empty() { 0.0 } else { entry.texts[2].size().x + GAP };
                     let has_remark = remark <= room;
                     let slot = if is_error && wide { ERROR_REMARK.max(remark) } else { remark };
                     let slot = if slot <= room { slot } else { remark };
