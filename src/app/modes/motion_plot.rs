@@ -29,7 +29,8 @@ fn line(
 }
 
 /// Shows the chosen plot, with the names of its lines above it.
-pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, playback: &Playback, integrator: IntegratorKind) {
+pub(crate) fn show(ui: &mut Ui, chosen: &mut MotionPlot, session: &Session) {
+    let (playback, integrator) = (&session.playback, session.scene().dynamics.integrator);
     let palette = Palette::new(ui.visuals());
     let axis = playback.history.axis();
     let probe = format!("{} {}", tr(&playback.history.probe), ["x", "y"][axis]);

@@ -1,6 +1,7 @@
 //! Plots of sections: the stress along each section of the scene, and N, V and M along its beam.
 
 use super::*;
+use crate::app::diagnosis::state_text;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::app::viewport::objects::add_middle_section;
 use crate::format::Context;
@@ -87,7 +88,7 @@ impl SectionPlot {
     const MAX_UNKNOWNS: usize = 2000;
 
     /// Requests the sections of an equilibrium; returns `true` while they are pending.
-    pub(crate) fn request(&mut self, simulation: &Simulation) -> bool {
+    fn request(&mut self, simulation: &Simulation) -> bool {
         if let Some(task) = &self.computing {
             match task.poll() {
                 Update::None | Update::Progress(()) => return true,
@@ -129,15 +130,13 @@ impl SectionPlot {
         }
     }
 
-    /// Shows the plots of an equilibrium of a scene, with a description if it is not the result for the scene; a scene without a section, or whose first result is pending, gets
-    /// the reason.
-    pub(crate) fn show(
-        &mut self,
-        ui: &mut Ui,
-        scene: &Scene,
-        (simulation, state): (&Simulation, Option<&str>),
-        actions: &mut Vec<Action>,
-    ) {
+    /// Shows the plots of the drawn equilibrium, with a description if it is not the result for the scene; a scene without a
+    /// section, or whose first result is pending, gets the reason.
+    pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let simulation = session.drawn();
+        if self.request(simulation) {
+            ui.ctx().request_repaint_after(POLL);
+        }
         let count = self.cuts_of(simulation).map_or(self.count, |cuts| cuts.own.len());
         if std::mem::replace(&mut self.count, count) < count {
             // A new section is shown.
@@ -161,7 +160,7 @@ impl SectionPlot {
             None => _ = ui.centered_and_justified(|ui| ui.weak(tr(reason))),
         };
         let show_table = |ui: &mut Ui| {
-            if let Some(state) = state {
+            if let Some(state) = state_text(session) {
                 ui.weak(state);
             }
             ui.horizontal_wrapped(|ui| {
@@ -172,7 +171,7 @@ impl SectionPlot {
                     let tip = "Adds a section through the middle of the body; the context menu of the body adds one at a point";
                     if ui.button(tr("Add a section")).on_hover_text(tr(tip)).clicked() {
                         let add = |scene: &mut Scene| add_middle_section(scene, simulation.system());
-                        actions.push(Action::edit("Sections", scene, add));
+                        actions.push(Action::edit("Sections", session.scene(), add));
                     }
                 }
                 if let Some(Ok(drawn)) = &drawn {

@@ -178,18 +178,8 @@ impl Lab {
         let Some(drawer) = self.desk.view.drawer else { return };
         let Desk { session, view, sections, .. } = &mut self.desk;
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
-            Drawer::Section => {
-                let shown = session.drawn();
-                if sections.request(shown) {
-                    ui.ctx().request_repaint_after(POLL);
-                }
-                let state = diagnosis::state_text(session);
-                sections.show(ui, session.scene(), (shown, state.as_deref()), actions);
-            }
-            Drawer::Motion => {
-                let integrator = session.scene().dynamics.integrator;
-                motion_plot::show(ui, &mut view.motion_plot, &session.playback, integrator);
-            }
+            Drawer::Section => sections.show(ui, session, actions),
+            Drawer::Motion => motion_plot::show(ui, &mut view.motion_plot, session),
         });
     }
 

@@ -15,14 +15,8 @@ const PLOTS: [(Ordinate, &str, &str); 4] = [
 ];
 
 /// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
-/// being computed, or the scene has none. `body` is the displacement of the first probe of the drawn equilibrium, m.
-pub(crate) fn show(
-    ui: &mut Ui,
-    session: &Session,
-    body: Option<Vector2<f64>>,
-    chosen: Option<Ordinate>,
-    actions: &mut Vec<Action>,
-) {
+/// being computed, or the scene has none.
+pub(crate) fn show(ui: &mut Ui, session: &Session, chosen: Option<Ordinate>, actions: &mut Vec<Action>) {
     let (scene, fact) = (session.scene(), &session.facts().curve);
     let looked_for = !fact.is_pending(scene);
     let Some(curve) = fact.latest() else {
@@ -38,7 +32,7 @@ pub(crate) fn show(
     let offered = curve.offered();
     let shown = chosen.filter(|own| offered.iter().any(|(other, ..)| other == own)).unwrap_or_else(|| curve.usual());
     let mut drawn = curve.figure(shown);
-    if let Some(body) = body.filter(|_| looked_for) {
+    if let Some(body) = first_probe(session.drawn()).filter(|_| looked_for) {
         move_scene(&mut drawn, body);
     }
     // The curve of a cantilever has linear theory of beams.

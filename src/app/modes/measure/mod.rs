@@ -45,9 +45,7 @@ impl Measure {
                 }
             }
             MeasureTab::HowFast => self.budget.show(ui, session, actions),
-            MeasureTab::LoadCurve => {
-                load_curve::show(ui, session, first_probe(session.drawn()), view.curve_plot, actions)
-            }
+            MeasureTab::LoadCurve => load_curve::show(ui, session, view.curve_plot, actions),
         }
     }
 }
