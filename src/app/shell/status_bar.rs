@@ -8,7 +8,7 @@ use crate::app::interface::*;
 use crate::app::language::filled;
 use crate::app::session::clock::fraction;
 use crate::app::task::solve::Phase;
-use crate::app::widgets::buttons::{Icon, icon_button};
+use crate::app::widgets::buttons::{icon, icon_button};
 use crate::format::grouped;
 
 /// Name of the error, and the least width of the slot of its remark, points: what follows stays in place when the remark
@@ -110,7 +110,7 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: 
             if is_offered || drawer == Drawer::Motion {
                 let (word, tip) = drawer.text();
                 let (word, tip) = (tr(word), tr(tip));
-                let icon = if open { Icon::Close } else { Icon::Open };
+                let icon = if open { icon::CLOSE } else { icon::OPEN };
                 if icon_button(ui, icon, word, Some(word), open).on_hover_text(tip).clicked() {
                     actions.push(Action::Toggle(Toggle::Drawer(drawer)));
                 }

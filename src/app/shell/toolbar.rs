@@ -3,7 +3,7 @@
 use super::*;
 use crate::app::language::Language;
 use crate::app::view_options::MODES;
-use crate::app::widgets::buttons::{Icon, at_right, icon_button};
+use crate::app::widgets::buttons::{Icon, at_right, icon, icon_button};
 
 /// Height of the toolbar in one row, and in the two rows of a narrow window, points.
 pub(crate) const HEIGHTS: [f32; 2] = [36.0, 68.0];
@@ -55,11 +55,11 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
             }
         };
         let (tip, is_open) = ("Show or hide the controls (P)", if view.narrow { view.sheet } else { view.panel });
-        button(Icon::Panel, "Panel", is_open, tip, Action::Toggle(Toggle::Panel));
+        button(icon::PANEL, "Panel", is_open, tip, Action::Toggle(Toggle::Panel));
         // The other language is named in that language, for users who do not read the current one.
-        button(Icon::Language, "Language", false, language.other().name(), Action::ToggleLanguage);
-        button(Icon::Theme, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
-        button(Icon::Help, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
+        button(icon::LANGUAGE, "Language", false, language.other().name(), Action::ToggleLanguage);
+        button(icon::THEME, "Theme", false, "Light or dark (T)", Action::ToggleTheme);
+        button(icon::HELP, "Help", view.help, "Keys and mouse (F1)", Action::Toggle(Toggle::Help));
     });
 }
 
@@ -68,9 +68,9 @@ fn tools(ui: &mut Ui, desk: &Desk, actions: &mut Vec<Action>) {
     let (session, wide, ended) = (&desk.session, !desk.view.narrow, desk.has_ended());
     let moves = session.is_motion();
     let run = match (session.is_running(), ended) {
-        (true, false) => (Icon::Pause, "Pause", "Pause here (Space)", true, Action::ToggleRun),
-        (false, _) => (Icon::Play, "Run", "Continue (Space)", true, Action::ToggleRun),
-        (true, true) => (Icon::Play, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
+        (true, false) => (icon::PAUSE, "Pause", "Pause here (Space)", true, Action::ToggleRun),
+        (false, _) => (icon::RUN, "Run", "Continue (Space)", true, Action::ToggleRun),
+        (true, true) => (icon::RUN, "Run", "Nothing to run: already at the end", false, Action::ToggleRun),
     };
     let step = match (moves, ended) {
         (true, _) => "One time step (N)",
@@ -80,12 +80,12 @@ fn tools(ui: &mut Ui, desk: &Desk, actions: &mut Vec<Action>) {
     let reset = "Solve again from rest, or return to the start of the motion (R)";
     for (icon, name, tip, enabled, action) in [
         run,
-        (Icon::Step, "Step", step, !(moves && ended), Action::Step),
-        (Icon::Reset, "Reset", reset, true, Action::Reset),
-        (Icon::Undo, "Undo", "Undo the last edit (Ctrl+Z)", session.undo.can_undo(), Action::Undo),
-        (Icon::Redo, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", session.undo.can_redo(), Action::Redo),
+        (icon::STEP, "Step", step, !(moves && ended), Action::Step),
+        (icon::RESET, "Reset", reset, true, Action::Reset),
+        (icon::UNDO, "Undo", "Undo the last edit (Ctrl+Z)", session.undo.can_undo(), Action::Undo),
+        (icon::REDO, "Redo", "Redo the last undone edit (Ctrl+Shift+Z)", session.undo.can_redo(), Action::Redo),
     ] {
-        let word = (wide && matches!(icon, Icon::Play | Icon::Pause | Icon::Step)).then_some(tr(name));
+        let word = (wide && matches!(action, Action::ToggleRun | Action::Step)).then_some(tr(name));
         let response = ui.add_enabled(enabled, |ui: &mut Ui| icon_button(ui, icon, tr(name), word, false));
         let tip = with_keys(ui.ctx(), tr(tip));
         if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {

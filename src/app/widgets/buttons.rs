@@ -1,29 +1,31 @@
 //! Buttons with icons, option buttons, and entries of pickers.
 
 use egui::text::LayoutJob;
-use egui::{
-    Align2, Button, FontId, IntoAtoms, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind,
-    TextFormat, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Button, Color32, FontId, IntoAtoms, Response, Role, Sense, StrokeKind, TextFormat, Ui, WidgetInfo, vec2};
 
 use crate::app::language::tr;
 use crate::app::widgets::palette::{BODY, Palette, SMALL};
 
-/// Icon of a button, drawn with lines because the fonts have no such glyphs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Icon {
-    Play,
-    Pause,
-    Step,
-    Reset,
-    Undo,
-    Redo,
-    Theme,
-    Language,
-    Help,
-    Panel,
-    Open,
-    Close,
+/// Icon of a button: a text in a font, painted with its middle in the middle of the icon's place.
+pub(crate) type Icon = (&'static str, FontId);
+
+/// Icons of buttons. Only egui's monospaced font has arrows and geometric shapes: they are escaped here, because letters in
+/// the sources have to be in both fonts.
+pub(crate) mod icon {
+    use super::{BODY, FontId, Icon};
+
+    pub(crate) const RUN: Icon = ("\u{25b6}", FontId::monospace(18.0)); // ▶
+    pub(crate) const PAUSE: Icon = ("\u{25ae}\u{25ae}", FontId::monospace(14.0)); // ▮▮
+    pub(crate) const STEP: Icon = ("\u{25b6}\u{25ae}", FontId::monospace(13.0)); // ▶▮
+    pub(crate) const RESET: Icon = ("\u{21ba}", FontId::monospace(24.0)); // ↺
+    pub(crate) const UNDO: Icon = ("\u{21a9}", FontId::monospace(26.0)); // ↩
+    pub(crate) const REDO: Icon = ("\u{21aa}", FontId::monospace(26.0)); // ↪
+    pub(crate) const PANEL: Icon = ("\u{25e8}", FontId::monospace(22.0)); // ◨
+    pub(crate) const LANGUAGE: Icon = ("中/EN", FontId::proportional(BODY));
+    pub(crate) const THEME: Icon = ("\u{25d1}", FontId::monospace(22.0)); // ◑
+    pub(crate) const HELP: Icon = ("?", FontId::proportional(BODY));
+    pub(crate) const OPEN: Icon = ("\u{25b2}", FontId::monospace(14.0)); // ▲
+    pub(crate) const CLOSE: Icon = ("\u{25bc}", FontId::monospace(14.0)); // ▼
 }
 
 /// Adds a button with an icon, followed by a word if one is given. `name` is its name for screen readers.
@@ -32,72 +34,25 @@ pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, word: Option<&str
     const WIDE: f32 = 52.0;
     const GAP: f32 = 5.0;
     const PADDING: f32 = 8.0;
+    const ICON: f32 = 14.0;
     const WORD: f32 = 38.0; // of Run and Pause, so that nothing moves
-    let font = FontId::proportional(BODY);
-    let least = if matches!(icon, Icon::Play | Icon::Pause) { WORD } else { 0.0 };
-    let side = if icon == Icon::Language { WIDE } else { SIDE };
-    let galley = word.map(|word| ui.painter().layout_no_wrap(word.to_owned(), font, egui::Color32::PLACEHOLDER));
-    let width = galley.as_ref().map_or(side, |galley| 2.0 * PADDING + 14.0 + GAP + galley.size().x.max(least));
+    let layout = |text: &str, font| ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER);
+    let least = if [icon::RUN, icon::PAUSE].contains(&icon) { WORD } else { 0.0 };
+    let side = if icon == icon::LANGUAGE { WIDE } else { SIDE };
+    let word = word.map(|word| layout(word, FontId::proportional(BODY)));
+    let mark = layout(icon.0, icon.1);
+    let width = word.as_ref().map_or(side, |word| 2.0 * PADDING + ICON + GAP + word.size().x.max(least));
     let (rect, response) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::click());
     let style = ui.style().interact_selectable(&response, chosen);
     ui.painter().rect(rect, style.corner_radius, style.weak_bg_fill, style.bg_stroke, StrokeKind::Inside);
-    let color = style.fg_stroke.color;
-    let center = match &galley {
-        Some(_) => rect.left_center() + vec2(PADDING + 7.0, 0.0),
-        None => rect.center(),
-    };
-    paint(ui.painter(), icon, center, color);
-    if let Some(galley) = galley {
-        let at = pos2(rect.left() + PADDING + 14.0 + GAP, rect.center().y - 0.5 * galley.size().y);
-        ui.painter().galley(at, galley, color);
+    let (color, left) = (style.fg_stroke.color, rect.left_center() + vec2(PADDING, 0.0));
+    let middle = if word.is_some() { left + vec2(0.5 * ICON, 0.0) } else { rect.center() };
+    ui.painter().galley(middle - mark.mesh_bounds.center().to_vec2(), mark, color);
+    if let Some(word) = word {
+        ui.painter().galley(left + vec2(ICON + GAP, -0.5 * word.size().y), word, color);
     }
     response.widget_info(|| WidgetInfo::selected(Role::Button, response.enabled(), chosen, name));
     response
-}
-
-fn paint(painter: &Painter, icon: Icon, center: Pos2, color: egui::Color32) {
-    let at = |x: f32, y: f32| center + vec2(x, y);
-    let stroke = Stroke::new(1.6, color);
-    let polygon = |points: Vec<Pos2>| _ = painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
-    let bar = |x: f32| _ = painter.rect_filled(Rect::from_center_size(at(x, 0.0), vec2(3.0, 11.0)), 0.5, color);
-    let arc = |from: f32, to: f32| -> Vec<Pos2> {
-        let angles = (0..=20u8).map(|i| from + (to - from) * f32::from(i) / 20.0);
-        angles.map(|a| at(5.5 * a.cos(), 5.5 * a.sin())).collect()
-    };
-    match icon {
-        Icon::Play => polygon(vec![at(-4.0, -6.0), at(6.0, 0.0), at(-4.0, 6.0)]),
-        Icon::Pause => [-3.0, 3.0].into_iter().for_each(bar),
-        Icon::Step => {
-            polygon(vec![at(-6.0, -5.5), at(2.0, 0.0), at(-6.0, 5.5)]);
-            bar(4.5);
-        }
-        Icon::Reset => {
-            painter.add(Shape::line(arc(-0.6, 4.6), stroke));
-            polygon(vec![at(0.5, -9.0), at(0.5, -2.0), at(-4.5, -5.5)]);
-        }
-        Icon::Undo | Icon::Redo => {
-            let side = if icon == Icon::Undo { 1.0 } else { -1.0 };
-            let turn = arc(-2.9, 1.2).into_iter().map(|p| pos2(center.x + side * (p.x - center.x), p.y));
-            painter.add(Shape::line(turn.collect(), stroke));
-            polygon([(-9.0, -2.0), (-2.0, -2.0), (-6.0, 3.0)].map(|(x, y)| at(side * x, y)).to_vec());
-        }
-        Icon::Theme => {
-            painter.circle_stroke(center, 5.5, stroke);
-            polygon(arc(-std::f32::consts::FRAC_PI_2, std::f32::consts::FRAC_PI_2));
-        }
-        Icon::Language => {
-            painter.text(center, Align2::CENTER_CENTER, "中/EN", FontId::proportional(BODY), color);
-        }
-        Icon::Help => {
-            painter.text(center, Align2::CENTER_CENTER, "?", FontId::proportional(BODY), color);
-        }
-        Icon::Panel => {
-            painter.rect_stroke(Rect::from_center_size(center, vec2(14.0, 11.0)), 1.5, stroke, StrokeKind::Middle);
-            painter.line_segment([at(2.5, -5.0), at(2.5, 5.0)], stroke);
-        }
-        Icon::Open => polygon(vec![at(-4.5, 2.5), at(0.0, -3.0), at(4.5, 2.5)]),
-        Icon::Close => polygon(vec![at(-4.5, -2.5), at(4.5, -2.5), at(0.0, 3.0)]),
-    }
 }
 
 /// Adds an entry of a picker: its name, and a description under it.
@@ -110,7 +65,7 @@ pub(crate) fn choice(ui: &mut Ui, palette: &Palette, selected: bool, id: &str, a
 }
 
 /// Lays out a name with a description under it, each in its colour.
-pub(crate) fn described(name: &str, about: &str, color: egui::Color32, about_color: egui::Color32) -> LayoutJob {
+pub(crate) fn described(name: &str, about: &str, color: Color32, about_color: Color32) -> LayoutJob {
     let format = |size: f32, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     let mut job = LayoutJob::default();
     job.append(name, 0.0, format(BODY, color));
