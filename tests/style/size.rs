@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 23_164),
-    ("study", &["src/study"], 6_527),
+    ("app", &["src/app"], 22_481),
+    ("study", &["src/study"], 6_440),
     ("model", &["src/model", "src/scene"], 3_109),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_239),
-    ("simulation", &["src/simulation"], 2_490),
-    ("assembly", &["src/assembly"], 3_019),
-    ("cli", &["src/cli"], 2_296),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_233),
+    ("simulation", &["src/simulation"], 2_471),
+    ("assembly", &["src/assembly"], 3_013),
+    ("cli", &["src/cli"], 2_199),
     ("dynamics", &["src/dynamics"], 1_922),
     ("render", &["src/render"], 1_896),
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_930),
-    ("plot", &["src/plot"], 887),
+    ("plot", &["src/plot"], 837),
     ("the rest of src", &["src"], 5_022),
     ("tests", &["tests"], 19_392),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 57_509;
+const SRC: usize = 56_561;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
