@@ -15,6 +15,7 @@ use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::story;
+use crate::app::widgets::text::boxed_text;
 use crate::image::Picture;
 use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
@@ -248,7 +249,7 @@ fn tell(lab: &mut Lab, delay: f64, k: u64) {
     lab.finish_story_frame();
 }
 
-/// Draws the lab, with the time or the iteration above the body; the story has captions of its own.
+/// Draws the lab, with the time or the iteration above the scale, where no legend is; the story has captions of its own.
 fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, RenderError> {
     language::speak(lab.settings.language);
     let simulation = lab.simulation();
@@ -263,9 +264,12 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
     };
     canvas.draw(lab, &mut |ctx| {
         let painter = ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("recorded time")));
-        let at = ctx.content_rect().center_top() + egui::vec2(0.0, 14.0);
-        let color = ctx.global_style().visuals.strong_text_color();
-        painter.text(at, egui::Align2::CENTER_TOP, &text, egui::FontId::monospace(13.0), color);
+        let (screen, visuals) = (ctx.content_rect(), &ctx.global_style().visuals);
+        let above_scale = screen.left_bottom() + egui::vec2(16.0, -48.0);
+        if !text.is_empty() {
+            let color = visuals.strong_text_color();
+            boxed_text(&painter, above_scale, egui::Align2::LEFT_BOTTOM, &text, visuals, color, screen.width());
+        }
     })
 }
 
