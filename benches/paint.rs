@@ -28,7 +28,7 @@ fn frames(c: &mut Criterion) {
         let scene = open(&source).unwrap();
         let simulation = Simulation::new(&scene).unwrap();
         let mut lab = Lab::new(source, scene, simulation);
-        lab.desk.view.bars = panel;
+        lab.desk.view.layout.bars = panel;
         let mut canvas = Canvas::new(&gpu, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
         let triangles = lab.simulation().system().mesh().element_count();
         let name = format!("paint/{triangles} triangles{}", if panel { ", with the panel" } else { "" });

@@ -16,7 +16,9 @@ pub(super) use crate::app::session::Session;
 pub(super) use crate::app::session::document::OpeningLoads;
 pub(super) use crate::app::session::playback::Playback;
 pub(super) use crate::app::task::thread::POLL;
-pub(super) use crate::app::view_options::{Drawer, Magnification, MeasureTab, Mode, Toggle, ViewOptions};
+pub(super) use crate::app::view_options::{
+    Drawer, LayoutOptions, Magnification, MeasureTab, Mode, Toggle, ViewOptions,
+};
 pub(super) use crate::app::widgets::buttons::{choice, option_button, options};
 pub(super) use crate::app::widgets::legend::{self, LegendMark};
 pub(super) use crate::app::widgets::load_scale::{LoadScale, STRAIGHT};

@@ -160,6 +160,30 @@ impl Magnification {
     }
 }
 
+/// Lines of the body that are drawn: its mesh, its shape at rest, in linear theory and in the reference, and the trail of its
+/// tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineOptions {
+    pub wireframe: bool,
+    pub rest_outline: bool,
+    pub ghost: bool,
+    pub exact: bool,
+    pub trail: bool,
+}
+
+/// Bars and panel around the view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayoutOptions {
+    /// `true` if bars and panel are drawn; images may omit them.
+    pub bars: bool,
+    /// `true` if the panel is open in a window that is wide enough for it.
+    pub panel: bool,
+    /// `true` if the panel is open over the body in a narrow window.
+    pub sheet: bool,
+    /// `true` if the window is too narrow for a panel next to the body.
+    pub narrow: bool,
+}
+
 /// Display options of the body, the plots and the bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewOptions {
@@ -170,11 +194,7 @@ pub struct ViewOptions {
     pub raw: bool,
     /// Factor of the displacement drawn in the mode Explore.
     pub magnification: Magnification,
-    pub wireframe: bool,
-    pub rest_outline: bool,
-    pub ghost: bool,
-    pub exact: bool,
-    pub trail: bool,
+    pub lines: LineOptions,
     pub mode: Mode,
     pub drawer: Option<Drawer>,
     pub motion_plot: MotionPlot,
@@ -182,14 +202,7 @@ pub struct ViewOptions {
     pub tab: MeasureTab,
     /// Quantities of the load curve; `None` means the default ones.
     pub curve_plot: Option<Ordinate>,
-    /// `true` if bars and panel are drawn; images may omit them.
-    pub bars: bool,
-    /// `true` if the panel is open in a window that is wide enough for it.
-    pub panel: bool,
-    /// `true` if the panel is open over the body in a narrow window.
-    pub sheet: bool,
-    /// `true` if the window is too narrow for a panel next to the body.
-    pub narrow: bool,
+    pub layout: LayoutOptions,
     /// `true` if the explanation of the status is shown.
     pub why: bool,
     pub help: bool,
@@ -204,20 +217,13 @@ impl Default for ViewOptions {
             fixed_range: None,
             raw: false,
             magnification: Magnification::None,
-            wireframe: true,
-            rest_outline: true,
-            ghost: true,
-            exact: true,
-            trail: true,
+            lines: LineOptions { wireframe: true, rest_outline: true, ghost: true, exact: true, trail: true },
             mode: Mode::default(),
             drawer: None,
             motion_plot: MotionPlot::default(),
             tab: MeasureTab::default(),
             curve_plot: None,
-            bars: true,
-            panel: true,
-            sheet: false,
-            narrow: false,
+            layout: LayoutOptions { bars: true, panel: true, sheet: false, narrow: false },
             why: false,
             help: false,
             edge: None,
@@ -234,13 +240,13 @@ impl ViewOptions {
     /// Shows what is hidden and hides what is shown; opening a drawer closes the other one.
     pub(crate) fn toggle(&mut self, what: Toggle) {
         match what {
-            Toggle::Wireframe => self.wireframe ^= true,
-            Toggle::RestOutline => self.rest_outline ^= true,
-            Toggle::Ghost => self.ghost ^= true,
-            Toggle::Trail => self.trail ^= true,
-            Toggle::Exact => self.exact ^= true,
-            Toggle::Panel if self.narrow => self.sheet ^= true,
-            Toggle::Panel => self.panel ^= true,
+            Toggle::Wireframe => self.lines.wireframe ^= true,
+            Toggle::RestOutline => self.lines.rest_outline ^= true,
+            Toggle::Ghost => self.lines.ghost ^= true,
+            Toggle::Trail => self.lines.trail ^= true,
+            Toggle::Exact => self.lines.exact ^= true,
+            Toggle::Panel if self.layout.narrow => self.layout.sheet ^= true,
+            Toggle::Panel => self.layout.panel ^= true,
             Toggle::Help => self.help ^= true,
             Toggle::Why => self.why ^= true,
             Toggle::Mode(mode) => {

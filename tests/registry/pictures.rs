@@ -52,7 +52,7 @@ fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab(id);
     let view = &mut lab.desk.view;
-    (view.bars, view.rest_outline, view.ghost, view.exact) = (false, false, false, false);
+    (view.layout.bars, view.lines.rest_outline, view.lines.ghost, view.lines.exact) = (false, false, false, false);
     lab.solve();
     let picture = picture(&gpu, &mut lab, [900, 600], 1.0, egui::Theme::Dark).unwrap();
     let (camera, rect) = (lab.camera(), lab.view_rect());

@@ -27,7 +27,7 @@ fn the_panel_can_be_left_out() {
     assert!((view.right() + warpbeam::app::PANEL_WIDTH - 1280.0).abs() < 2.0, "{view:?}");
     let share = view.area() / (1280.0 * 800.0);
     assert!((0.65..0.75).contains(&share), "the body has {share} of the window");
-    lab.desk.view.bars = false;
+    lab.desk.view.layout.bars = false;
     let without = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     assert_eq!(lab.view_rect(), egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0)));
     assert!(difference(&with, &without) > 0.1);
@@ -38,7 +38,7 @@ fn the_panel_can_be_left_out() {
 fn high_density_shows_the_same_picture_sharper() {
     let gpu = Gpu::headless().unwrap();
     let mut lab = lab("shear");
-    lab.desk.view.bars = false;
+    lab.desk.view.layout.bars = false;
     lab.solve();
     let one = picture(&gpu, &mut lab, [400, 300], 1.0, egui::Theme::Light).unwrap();
     let two = picture(&gpu, &mut lab, [800, 600], 2.0, egui::Theme::Light).unwrap();

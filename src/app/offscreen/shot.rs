@@ -38,7 +38,7 @@ pub fn shot(
     let mut lab = Lab::new(source, scene, simulation);
     lab.settings.language = options.look.language;
     let view = &mut lab.desk.view;
-    view.bars = !options.no_panel;
+    view.layout.bars = !options.no_panel;
     view.color_with(options.field);
     view.magnification = options.magnify.unwrap_or_default();
     if options.curve {

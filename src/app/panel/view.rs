@@ -56,14 +56,14 @@ pub(super) fn options(ui: &mut Ui, panel: &mut Panel<'_>) {
     ui.horizontal_wrapped(|ui| {
         let tip = "Each element's own values, not smoothed at the nodes: they jump where the mesh is coarse";
         ui.checkbox(&mut view.raw, tr("Each element alone")).on_hover_text(tr(tip));
-        ui.checkbox(&mut view.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
-        ui.checkbox(&mut view.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
+        ui.checkbox(&mut view.lines.wireframe, tr("Wireframe")).on_hover_text(tr("Element edges (W)"));
+        ui.checkbox(&mut view.lines.rest_outline, tr("Rest")).on_hover_text(tr("Outline of the body at rest (O)"));
         if panel.scene.analysis == Analysis::Dynamic {
-            ui.checkbox(&mut view.trail, tr("Trail")).on_hover_text(tr("Path of the tip (Y)"));
+            ui.checkbox(&mut view.lines.trail, tr("Trail")).on_hover_text(tr("Path of the tip (Y)"));
         } else {
             let tip = "Outline of the reference solution, where it is known (X)";
-            ui.checkbox(&mut view.exact, tr("Reference")).on_hover_text(tr(tip));
-            ui.checkbox(&mut view.ghost, tr("Linear")).on_hover_text(tr("Outline of the linear solution (G)"));
+            ui.checkbox(&mut view.lines.exact, tr("Reference")).on_hover_text(tr(tip));
+            ui.checkbox(&mut view.lines.ghost, tr("Linear")).on_hover_text(tr("Outline of the linear solution (G)"));
         }
         if ui.button(tr("Fit")).on_hover_text(tr("Show the whole body (F)")).clicked() {
             panel.actions.push(Action::Fit);
@@ -102,10 +102,10 @@ pub(super) fn summary(view: &ViewOptions, scene: &Scene) -> String {
     // Drops a remark in brackets or after a comma from the field's name.
     let field = name.split([',', '(', '，', '（']).next().unwrap_or(name).trim_end();
     let shown = [
-        (view.rest_outline, "rest"),
-        (view.exact && !moves, "reference"),
-        (view.ghost && !moves, "linear"),
-        (view.trail && moves, "trail"),
+        (view.lines.rest_outline, "rest"),
+        (view.lines.exact && !moves, "reference"),
+        (view.lines.ghost && !moves, "linear"),
+        (view.lines.trail && moves, "trail"),
     ];
     let shown = shown.into_iter().filter(|(on, _)| *on).map(|(_, word)| tr(word));
     joined(std::iter::once(field).chain(shown))

@@ -152,7 +152,7 @@ impl Lab {
             ctx.set_theme(egui::Theme::from(theme));
         }
         let view = &mut self.desk.view;
-        view.panel = settings.panel;
+        view.layout.panel = settings.panel;
         let scene = self.desk.session.scene();
         view.drawer = settings.drawer.filter(|drawer| drawer.suits(scene));
         view.color_with(settings.color());
@@ -172,24 +172,24 @@ impl Lab {
         let mut settings = self.settings.clone();
         settings.theme = theme;
         // The cards of Learn and the story have view options of their own, which are not saved.
-        if let Some(ViewOptions { panel, drawer, field, .. }) = self.own_desk().map(|desk| &desk.view) {
-            (settings.panel, settings.drawer) = (*panel, *drawer);
-            settings.set_color(*field);
+        if let Some(view) = self.own_desk().map(|desk| &desk.view) {
+            (settings.panel, settings.drawer) = (view.layout.panel, view.drawer);
+            settings.set_color(view.field);
         }
         settings
     }
 
     /// Returns the input of the body's render pass, as of the last [`Self::ui`].
     pub fn frame(&self) -> Frame<'_> {
-        self.desk.viewport.view.body.frame(self.desk.view.wireframe)
+        self.desk.viewport.view.body.frame(self.desk.view.lines.wireframe)
     }
 
     /// Returns the displayed bodies, as of the last [`Self::ui`], at this number of pixels per point.
     pub(crate) fn views(&self, pixels_per_point: f32) -> Vec<View<'_>> {
-        let Desk { viewport, view: ViewOptions { mode, wireframe, .. }, compare, .. } = &self.desk;
+        let Desk { viewport, view: ViewOptions { mode, lines, .. }, compare, .. } = &self.desk;
         match mode {
-            Mode::Compare => compare.views(*wireframe, pixels_per_point),
-            _ => vec![viewport.view.view(viewport.camera.shown, *wireframe, pixels_per_point)],
+            Mode::Compare => compare.views(lines.wireframe, pixels_per_point),
+            _ => vec![viewport.view.view(viewport.camera.shown, lines.wireframe, pixels_per_point)],
         }
     }
 }

@@ -203,7 +203,7 @@ impl Lab {
             sections.wait(session.simulation());
         }
         if view.mode == Mode::Compare {
-            compare.solve_to_end(session, view.bars);
+            compare.solve_to_end(session, view.layout.bars);
         }
         if has_search {
             self.learn.line = learn::UNTIL;

@@ -44,10 +44,10 @@ impl Lab {
         self.request_facts(ui.ctx());
         self.desk.measure.budget.poll(ui.ctx());
         self.show_notices(ui.ctx());
-        self.desk.view.narrow = ui.ctx().content_rect().width() < NARROW;
+        self.desk.view.layout.narrow = ui.ctx().content_rect().width() < NARROW;
         // Enter ends text editing within its frame, and the other keys of that frame belong to the text.
         let was_typing = ui.ctx().text_edit_focused();
-        if self.desk.view.bars {
+        if self.desk.view.layout.bars {
             self.bars(ui, &mut actions);
             self.show_banners(ui, &mut actions);
         }
@@ -59,7 +59,7 @@ impl Lab {
             Mode::Learn => {
                 // Escape closes the panel over the body and the explanation first.
                 let view = &self.desk.view;
-                let is_covered = view.help || view.why || view.narrow && view.sheet;
+                let is_covered = view.help || view.why || view.layout.narrow && view.layout.sheet;
                 let keys = !self.has_dialog() && !is_covered;
                 self.learn.show(ui, &self.desk.session, keys, &mut actions);
             }
@@ -81,7 +81,7 @@ impl Lab {
             _ => self.body_view(ui, &mut actions),
         });
         let view = &self.desk.view;
-        if view.bars && view.narrow && view.sheet {
+        if view.layout.bars && view.layout.narrow && view.layout.sheet {
             self.sheet(ui, &mut actions);
         }
         for action in actions {
@@ -126,16 +126,16 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let bar = |ui: &Ui| unfilled(ui).inner_margin(Margin::symmetric(12, 0));
         let top = Panel::top("toolbar")
-            .exact_size(toolbar::HEIGHTS[usize::from(self.desk.view.narrow)])
+            .exact_size(toolbar::HEIGHTS[usize::from(self.desk.view.layout.narrow)])
             .resizable(false)
             .frame(bar(ui));
         top.show(ui, |ui| self.toolbar(ui, actions));
         // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
-        if self.desk.view.mode != Mode::Compare && !(self.aside.is_some() && self.desk.view.narrow) {
+        if self.desk.view.mode != Mode::Compare && !(self.aside.is_some() && self.desk.view.layout.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
             bottom.show(ui, |ui| status_bar::show(ui, &self.desk.session, &self.desk.view, actions));
         }
-        if self.desk.view.panel && !self.desk.view.narrow {
+        if self.desk.view.layout.panel && !self.desk.view.layout.narrow {
             let frame = unfilled(ui).inner_margin(Margin { left: 12, right: 8, top: 8, bottom: 4 });
             let panel = Panel::right("panel").exact_size(PANEL_WIDTH).resizable(false).frame(frame);
             panel.show(ui, |ui| self.panel(ui, actions));
@@ -161,7 +161,7 @@ impl Lab {
                 });
             });
         if ui.input(|i| i.key_pressed(Key::Escape)) && !ui.ctx().text_edit_focused() {
-            self.desk.view.sheet = false;
+            self.desk.view.layout.sheet = false;
         }
     }
 
@@ -220,7 +220,7 @@ impl Lab {
     }
 
     fn body_view(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        if self.desk.view.bars {
+        if self.desk.view.layout.bars {
             self.status_line(ui, actions);
             if self.desk.view.why {
                 self.explanation(ui);
@@ -247,14 +247,15 @@ impl Lab {
         let session = &self.desk.session;
         let errors = diagnosis::errors(session);
         // Without bars, the note has the status of a motion that has stopped.
-        let stopped = || Some(diagnosis::status_text(session)).filter(|(_, is_bad)| *is_bad && !self.desk.view.bars);
+        let stopped =
+            || Some(diagnosis::status_text(session)).filter(|(_, is_bad)| *is_bad && !self.desk.view.layout.bars);
         let label = diagnosis::state_text(session).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
         self.desk.viewport.paint(&painter, visuals, &self.content(), errors, label.as_deref());
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
-        if self.desk.view.bars && self.desk.session.is_motion() && self.aside.is_none() {
+        if self.desk.view.layout.bars && self.desk.session.is_motion() && self.aside.is_none() {
             let Desk { session, viewport, .. } = &self.desk;
             let now = session.simulation().state().time();
             time_line::show(ui, rect, &viewport.camera.shown, (&session.playback, now), actions);
@@ -274,7 +275,7 @@ impl Lab {
         let (viewport, content) = self.viewport_and_content();
         actions.extend(viewport.show_values(ui, &painter, &content));
         self.paint_story(ui, &painter, rect);
-        if self.desk.view.bars {
+        if self.desk.view.layout.bars {
             self.show_work(ui, rect, actions);
         }
         if self.desk.viewport.misses_body() {

@@ -18,15 +18,14 @@ impl Lab {
         let session = built_in("article")
             .and_then(|(source, scene)| Some(Session::new(source, scene.clone(), Simulation::new(&scene).ok()?)));
         let own = &mut self.desk;
-        let (bars, narrow) = (own.view.bars, own.view.narrow);
         own.view.mode = Mode::Explore;
         let Some(session) = session else { return };
         let mut desk = Desk::new(session);
         desk.viewport.eases = own.viewport.eases;
         desk.viewport.view.rect = own.viewport.view.rect;
         // A card has the controls that it needs, so the panel is closed until the user opens it.
-        let (mode, panel, raw) = (Mode::Learn, false, true);
-        desk.view = ViewOptions { mode, bars, panel, narrow, raw, ..ViewOptions::default() };
+        let layout = LayoutOptions { panel: false, sheet: false, ..own.view.layout };
+        desk.view = ViewOptions { mode: Mode::Learn, layout, raw: true, ..ViewOptions::default() };
         self.aside = Some(Box::new(std::mem::replace(own, desk)));
         self.set_card_up();
     }
@@ -72,7 +71,7 @@ impl Lab {
         *panel = PanelState::default();
         view.color_with(setup.field);
         view.fixed_range = None;
-        (view.exact, view.rest_outline, view.ghost) = (setup.exact, setup.rest, false);
+        (view.lines.exact, view.lines.rest_outline, view.lines.ghost) = (setup.exact, setup.rest, false);
         viewport.camera.own = None;
         session.set_running(!setup.waits);
         if setup.waits {

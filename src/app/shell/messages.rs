@@ -67,7 +67,8 @@ impl Lab {
 
     /// Reports the first self-intersection of the body's outline of a document.
     pub(super) fn report_crossing(&mut self, ui: &Ui) {
-        let is_shown = self.desk.view.bars && self.aside.is_none() && self.story.is_none() && self.toast.is_none();
+        let is_shown =
+            self.desk.view.layout.bars && self.aside.is_none() && self.story.is_none() && self.toast.is_none();
         let now = ui.input(|i| i.time);
         let (viewport, content) = self.viewport_and_content();
         if is_shown && viewport.finds_crossing(&content, now) {

@@ -96,7 +96,7 @@ impl BarNumber {
 
 pub(crate) fn show(ui: &mut Ui, session: &Session, view: &ViewOptions, actions: &mut Vec<Action>) {
     // In a narrow window the numbers have no bars.
-    let wide = !view.narrow;
+    let wide = !view.layout.narrow;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = if wide { 28.0 } else { 14.0 };
         let entries = match session.simulation().motion() {

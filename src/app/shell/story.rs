@@ -91,7 +91,8 @@ impl Lab {
         session.rebase(source);
         session.set_running(true);
         *panel = PanelState::default();
-        let own = ViewOptions { bars: view.bars, narrow: view.narrow, ..ViewOptions::default() };
+        let layout = LayoutOptions { panel: true, sheet: false, ..view.layout };
+        let own = ViewOptions { layout, ..ViewOptions::default() };
         let view = std::mem::replace(view, own);
         let (is_still, aside) = (self.reduces_motion(), self.aside.take());
         let (start, part, left, compares) = (None, 0, 0.0, false);
@@ -124,7 +125,7 @@ impl Lab {
         let (method, element, load) = (part.setting)(if story.is_still { 1.0 } else { time / part.seconds });
         story.compares = load == 1.0;
         let Desk { session, view, .. } = &mut self.desk;
-        [view.ghost, view.exact] = part.outlines;
+        [view.lines.ghost, view.lines.exact] = part.outlines;
         let mut scene = session.document().original.clone();
         scene.solver.method = method;
         scene.set_element(element);

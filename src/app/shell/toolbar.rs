@@ -22,7 +22,7 @@ impl Lab {
             modes(ui, view, actions);
             window_tools(ui, view, settings.language, actions);
         };
-        if view.narrow {
+        if view.layout.narrow {
             ui.add_space(6.0);
             ui.horizontal(|ui| of_scene(ui, actions));
             ui.horizontal(|ui| of_window(ui, actions));
@@ -54,7 +54,8 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
                 actions.push(action);
             }
         };
-        let (tip, is_open) = ("Show or hide the controls (P)", if view.narrow { view.sheet } else { view.panel });
+        let (tip, is_open) =
+            ("Show or hide the controls (P)", if view.layout.narrow { view.layout.sheet } else { view.layout.panel });
         button(icon::PANEL, "Panel", is_open, tip, Action::Toggle(Toggle::Panel));
         // The other language is named in that language, for users who do not read the current one.
         button(icon::LANGUAGE, "Language", false, language.other().name(), Action::ToggleLanguage);
@@ -65,7 +66,7 @@ fn window_tools(ui: &mut Ui, view: &ViewOptions, language: Language, actions: &m
 
 /// Shows the buttons that run the solution, and those that undo and redo edits; with words where there is room.
 fn tools(ui: &mut Ui, desk: &Desk, actions: &mut Vec<Action>) {
-    let (session, wide, ended) = (&desk.session, !desk.view.narrow, desk.has_ended());
+    let (session, wide, ended) = (&desk.session, !desk.view.layout.narrow, desk.has_ended());
     let moves = session.is_motion();
     let run = match (session.is_running(), ended) {
         (true, false) => (icon::PAUSE, "Pause", "Pause here (Space)", true, Action::ToggleRun),

@@ -19,7 +19,7 @@ pub(crate) fn has_legend(view: Vec2) -> bool {
 
 /// Returns `true` if a picture without bars is so small, points, that it has no arrows and no names.
 pub(crate) fn is_tiny(options: &ViewOptions, view: Vec2) -> bool {
-    !options.bars && view.x < KEY_WIDTH
+    !options.layout.bars && view.x < KEY_WIDTH
 }
 
 /// Paints the colours of a map from the lowest to the highest.

@@ -70,7 +70,7 @@ impl<'a> Content<'a> {
 
     /// Returns the displacement of the linear solution, m, if it is drawn; not while the drawn body has another load.
     fn ghost(&self) -> Option<&'a [Vector2<f64>]> {
-        let is_wanted = self.options.ghost && self.simulation().scene().solver.method != MethodKind::Linear;
+        let is_wanted = self.options.lines.ghost && self.simulation().scene().solver.method != MethodKind::Linear;
         // Linear theory does not have the force of the mouse spring.
         let is_of_drawn = self.session.fallback().is_none() && self.simulation().mouse_spring().is_none();
         self.session.linear().map(Simulation::displacement).filter(|_| is_wanted && is_of_drawn)
@@ -204,7 +204,7 @@ impl MainView {
 
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
     fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
-        let reference = content.reference().filter(|_| content.options.exact);
+        let reference = content.reference().filter(|_| content.options.lines.exact);
         bars::magnified_outline(reference, self.view.body.magnification)
     }
 

@@ -139,7 +139,7 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
     };
     let rest = |n: u32| overlay.body.system.mesh().nodes()[n as usize];
     let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.view.body.magnification;
-    if overlay.options.rest_outline {
+    if overlay.options.lines.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
     if let Some(linear) = overlay.main.as_ref().and_then(|main| main.ghost) {
@@ -154,7 +154,7 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
         dashed(painter, projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
         dashed(painter, projection, line, Stroke::new(1.7, palette.exact));
     }
-    if let Some(main) = overlay.main.as_ref().filter(|_| overlay.options.trail) {
+    if let Some(main) = overlay.main.as_ref().filter(|_| overlay.options.lines.trail) {
         trail(painter, overlay, main.playback, palette);
     }
 }
@@ -553,7 +553,7 @@ fn key(painter: &Painter, overlay: &Overlay<'_>, main: &MainOverlay<'_>, palette
         let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
         lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }
-    if overlay.options.rest_outline {
+    if overlay.options.lines.rest_outline {
         lines.push((palette.rest, Some(LegendMark::Outline), tr("rest").to_owned()));
     }
     let font = FontId::proportional(BODY);

@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, panes: &[Pane], number: usize, input: &CompareIn
     ui.horizontal(|ui| {
         let (bar, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
         ui.painter().rect_filled(bar, 3.0, palette.solution(&pane.setting.apply(scene)));
-        let close = panes.len() > *PANES.start() && input.view.bars;
+        let close = panes.len() > *PANES.start() && input.view.layout.bars;
         let room = ui.available_width() - if close { 34.0 } else { 0.0 } - 12.0;
         // Widths of the pickers as fractions of the row, and the largest width, points.
         let (shares, widest) = if in_motion { ([0.5, 0.2, 0.3], 190.0) } else { ([0.38, 0.25, 0.37], 120.0) };
@@ -57,7 +57,7 @@ const MAX_PROBES: usize = 3;
 
 /// Returns the number of probes that a header shows, the first of the scene; a narrow window has no room for them.
 pub(super) fn shown_probes(scene: &Scene, view: &ViewOptions) -> usize {
-    if view.narrow { 0 } else { scene.probes.len().min(MAX_PROBES) }
+    if view.layout.narrow { 0 } else { scene.probes.len().min(MAX_PROBES) }
 }
 
 /// Shows the displacements of the probes.
@@ -86,7 +86,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
         let is_inverted = end.deformation.inverted_elements > 0;
         let inverted = if is_inverted { format!(", {}", tr("inverted elements")) } else { String::new() };
         // Images without bars omit the time, which differs from run to run.
-        let time = pane.shown_seconds(input).filter(|_| input.view.bars);
+        let time = pane.shown_seconds(input).filter(|_| input.view.layout.bars);
         let time = time.map_or_else(String::new, |time| format!("{} · ", engineering(two_digits(time), "s")));
         let area = area_text(end.deformation.area_change);
         (false, format!("{time}{}{stopped}{inverted} · {area}", count(end.iterations, "iteration")))
@@ -191,10 +191,10 @@ pub(super) fn key(ui: &Ui, rect: Rect, view: &ViewOptions, (range, magnification
         let place = painter.text(at, Align2::LEFT_CENTER, text, font.clone(), palette.secondary);
         x = place.right() + 16.0;
     };
-    if view.exact && !in_motion {
+    if view.lines.exact && !in_motion {
         entry(tr("reference"), LegendMark::Dashes, palette.exact);
     }
-    if view.rest_outline && !in_motion {
+    if view.lines.rest_outline && !in_motion {
         entry(tr("rest"), LegendMark::Outline, palette.rest);
     }
     // The common colour bar is at the right end, with its title if there is room for it.

@@ -234,7 +234,7 @@ impl Compare {
 
     /// Shows the presets above the panes.
     pub(crate) fn bars(&mut self, ui: &mut Ui, input: &CompareInput<'_>) {
-        if !input.view.bars {
+        if !input.view.layout.bars {
             return;
         }
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 4));
@@ -332,7 +332,7 @@ impl Compare {
         for (pane, [_, body]) in self.panes.iter_mut().zip(&places) {
             (pane.view.body.range, pane.view.rect) = (range, *body);
         }
-        let reference = input.reference.filter(|_| input.view.exact);
+        let reference = input.reference.filter(|_| input.view.lines.exact);
         let exact = bars::magnified_outline(reference, self.magnification);
         self.fit_camera(ui, input, &exact);
         if self.in_motion {
@@ -450,7 +450,7 @@ impl Compare {
         let bounds = exact.iter().flatten().fold(rest, grow);
         let bounds = others.iter().flat_map(|pane| &pane.view.body.points).fold(bounds, grow);
         let linear = linear.iter().flat_map(|pane| &pane.view.body.points);
-        let has_reference = input.reference.is_some() && input.view.exact;
+        let has_reference = input.reference.is_some() && input.view.lines.exact;
         let is_known = !others.is_empty() || has_reference;
         if is_known { grow_to_linear(bounds, linear.copied()) } else { linear.fold(bounds, grow) }
     }

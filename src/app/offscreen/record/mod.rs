@@ -211,7 +211,7 @@ pub fn record(
 fn prepared(mut lab: Lab, options: &RecordOptions, preview: Option<&Preview>) -> Lab {
     lab.settings.language = options.look.language;
     if let Some(preview) = preview {
-        lab.desk.view.bars = false;
+        lab.desk.view.layout.bars = false;
         let camera = lab.fit([preview.low, preview.high], options.size.map(f64::from));
         lab.desk.viewport.camera.set_camera(camera);
         lab.desk.view.fixed_range = Some(preview.range);
