@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 22_485),
+    ("app", &["src/app"], 22_496),
     ("study", &["src/study"], 6_440),
     ("model", &["src/model", "src/scene"], 3_109),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_233),
@@ -26,7 +26,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("tests", &["tests"], 19_392),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 56_565;
+const SRC: usize = 56_576;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
