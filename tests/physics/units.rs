@@ -1,7 +1,8 @@
 //! Tests of numbers with units, in every place that accepts numbers.
 
 use crate::common::*;
-use warpbeam::scene::units::parse;
+use warpbeam::scene::limits::BUDGET_MS;
+use warpbeam::scene::units::{parse, within};
 
 #[test]
 fn units_are_read_to_the_last_digit() {
@@ -29,6 +30,15 @@ fn units_are_read_to_the_last_digit() {
     // Powers of ten are rounded once.
     for (text, unit, value) in [("3 mm", "m", 3e-3), ("0.7 mm", "m", 7e-4), ("7.8 g/cm³", "kg/m³", 7.8e3)] {
         assert_eq!(parse(text, unit), Ok(value));
+    }
+}
+
+#[test]
+fn errors_and_times_that_cannot_be_used_are_refused() {
+    for limit in [warpbeam::scene::keys::range("solver.max_error_percent"), BUDGET_MS] {
+        for text in ["", "fast", "-1", "nan", "1 kg", "ms"] {
+            assert!(within(limit)(text).is_err(), "{text}");
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 22_496),
+    ("app", &["src/app"], 22_497),
     ("study", &["src/study"], 6_440),
     ("model", &["src/model", "src/scene"], 3_109),
     ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_233),
@@ -23,10 +23,10 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("mesh", &["src/mesh"], 1_930),
     ("plot", &["src/plot"], 837),
     ("the rest of src", &["src"], 5_022),
-    ("tests", &["tests"], 19_392),
+    ("tests", &["tests"], 19_402),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 56_576;
+const SRC: usize = 56_577;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
