@@ -67,7 +67,7 @@ pub(crate) fn errors(session: &Session) -> Errors {
     let behind = session.live().filter(|live| !live.is_of(session.scene()));
     let percent_of = |u: Option<Vector2<f64>>| Some((error_percent(u?, first.displacement)?, u?));
     // A state that is not drawn, diverges, or is not the one to which loading from rest leads, has no error to show.
-    let is_elsewhere = session.path().is_some_and(|path| path.elsewhere.is_some()) && simulation.status().is_success();
+    let is_elsewhere = session.path().is_some_and(|path| path.elsewhere.is_some());
     let own = percent_of(behind.map_or_else(|| first_probe(simulation), |behind| behind.own))
         .filter(|_| session.fallback().is_none() && !is_elsewhere);
     let source = own.filter(|(error, _)| format::percent(*error) != format::percent(0.0)).map(|(_, u)| {
@@ -239,10 +239,11 @@ pub(crate) fn summary(session: &Session, remedy: Option<&Remedy>) -> (String, bo
         add(tr("diverges if it runs on").to_owned());
     }
     notes_on_mesh(simulation).iter().for_each(|note| add(said(note)));
-    if let Some(path) = session.path().filter(|_| simulation.status().is_success()) {
+    let path = session.path();
+    if let Some(path) = &path {
         path.claims().map(|claim| said(&claim)).for_each(&mut add);
     }
-    let is_critical = session.path().and_then(|path| path.critical).is_some_and(|factor| factor <= 1.0);
+    let is_critical = path.and_then(|path| path.critical).is_some_and(|factor| factor <= 1.0);
     (text, inside_out || is_critical || runs_away(session) || stability(simulation) == Some(false))
 }
 

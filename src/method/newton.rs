@@ -208,8 +208,8 @@ impl Newton {
         };
         state.copy_from(&shown.state);
         self.load_factor = Some(shown.factor);
-        // Nothing but the path leads to its end where supports move.
         let has_limit = follower.limit.is_some();
+        // Nothing but the path leads to its end where supports move.
         let may_shorten = !has_limit && !problem.supports().move_the_body() && !self.load_steps_failed;
         match progress {
             PathProgress::Ended(PathEndReason::Solves(_)) => {}

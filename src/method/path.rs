@@ -260,7 +260,7 @@ pub struct Bifurcation {
 
 impl Jump {
     /// Returns the jump from a limit point to a state, if one is known.
-    pub(super) fn from(limit: &ContinuationPoint<State>, to: Option<&State>, is_on_path: bool) -> Self {
+    fn from(limit: &ContinuationPoint<State>, to: Option<&State>, is_on_path: bool) -> Self {
         let distance = to.map(|to| largest_distance(&limit.state.displacement, &to.displacement));
         Self { factor: limit.factor, distance, is_on_path }
     }

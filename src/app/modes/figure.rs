@@ -5,8 +5,8 @@ use crate::app::platform::files;
 use crate::app::platform::new_file::NewFile;
 
 /// Format of a file with a figure: its extension, its description, and the function that writes its text.
-type Format = (&'static str, &'static str, fn(&Figure) -> String);
-const FORMATS: [Format; 2] = [
+type FigureFormat = (&'static str, &'static str, fn(&Figure) -> String);
+const FORMATS: [FigureFormat; 2] = [
     ("csv", "Every point as a table, with units", Figure::csv),
     ("svg", "The plot and its table as a vector drawing", |figure| plot::figures([figure]).svg()),
 ];

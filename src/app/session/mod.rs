@@ -247,7 +247,7 @@ impl Session {
 
     /// Returns `true` if a search has ended without an equilibrium.
     pub(crate) fn has_failed(&self) -> bool {
-        !self.is_motion() && self.model.simulation.status().failure().is_some()
+        is_lost(&self.model.simulation)
     }
 
     /// Returns `true` if the scene has unsaved edits.
