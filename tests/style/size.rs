@@ -13,7 +13,7 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("app", &["src/app"], 22_497),
     ("study", &["src/study"], 6_440),
     ("model", &["src/model", "src/scene"], 3_109),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_233),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_291),
     ("simulation", &["src/simulation"], 2_471),
     ("assembly", &["src/assembly"], 3_013),
     ("cli", &["src/cli"], 2_199),
@@ -22,11 +22,11 @@ const LINES: &[(&str, &[&str], usize)] = &[
     ("element", &["src/element"], 2_008),
     ("mesh", &["src/mesh"], 1_930),
     ("plot", &["src/plot"], 837),
-    ("the rest of src", &["src"], 5_022),
-    ("tests", &["tests"], 19_402),
+    ("the rest of src", &["src"], 5_023),
+    ("tests", &["tests"], 19_413),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 56_577;
+const SRC: usize = 56_636;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
