@@ -10,7 +10,7 @@
 //! - the **inertia is consistent**: the number of negative eigenvalues of the tangent matrix changes by one exactly
 //!   where dλ/ds changes its sign, and nowhere else. A step that left its branch violates this.
 //!
-//! Otherwise the step is shortened. An inertia that stays inconsistent in the smallest step is a bifurcation.
+//! Otherwise the step is tried with the stress of the tangent matrix from before each correction, and then shortened. An inertia that stays inconsistent in the smallest step is a bifurcation.
 
 /// Equations r(x, λ) = 0 of a path.
 pub(crate) trait PathEquations {
@@ -30,11 +30,12 @@ pub(crate) trait PathEquations {
 
     /// Linearizes the equations at a state and load factor: writes Newton's correction at fixed λ into `correction` and
     /// dx/dλ at fixed residual into `rate`. Returns the number of negative eigenvalues of the tangent matrix, or `None`
-    /// if the results are not finite.
+    /// if the results are not finite. If `stressed` is given, the tangent matrix has the stress of that state.
     fn linearize(
         &mut self,
         state: &mut Self::Configuration,
         factor: f64,
+        stressed: Option<&Self::Configuration>,
         correction: &mut [f64],
         rate: &mut [f64],
     ) -> Option<usize>;
@@ -176,6 +177,10 @@ pub(crate) struct Continuation<S> {
     pub(crate) locates_all: bool,
     /// Number of places in a unit of λ at which steps look for bifurcations that hide each other.
     pub(crate) places: f64,
+    /// `true` if a step that is not accepted is tried with the other value of `stress_lags`.
+    pub(crate) may_lag: bool,
+    /// `true` if the tangent matrix has the stress before each correction.
+    stress_lags: bool,
     scratch: [Vec<f64>; 2],
 }
 
@@ -236,7 +241,7 @@ impl<S: Clone> Continuation<S> {
         let n = equations.unknowns();
         let weight = 1.0 / (n.max(1) as f64 * unit * unit);
         let (mut correction, mut rate) = (vec![0.0; n], vec![0.0; n]);
-        let modes = equations.linearize(&mut state, factor, &mut correction, &mut rate)?;
+        let modes = equations.linearize(&mut state, factor, None, &mut correction, &mut rate)?;
         let length = (weight * dot(&rate, &rate) + 1.0).sqrt();
         let slope = 1.0 / length;
         let tangent = rate.iter().map(|v| v * slope).collect();
@@ -259,6 +264,8 @@ impl<S: Clone> Continuation<S> {
             max_by_factor: f64::INFINITY,
             locates_all: false,
             places: 0.0,
+            may_lag: false,
+            stress_lags: false,
             scratch,
         };
         usable.then_some(made)
@@ -277,7 +284,11 @@ impl<S: Clone> Continuation<S> {
                 return Err(PathFailure::Limit);
             }
             let from = self.point.clone();
-            let Some((point, contraction, cosine)) = self.correct(equations, &from, step) else {
+            let corrected = self.correct(equations, &from, step).or_else(|| {
+                self.stress_lags ^= self.may_lag;
+                self.may_lag.then(|| self.correct(equations, &from, step))?
+            });
+            let Some((point, contraction, cosine)) = corrected else {
                 step *= 0.5;
                 was_rejected = true;
                 if step < MIN_STEP {
@@ -388,7 +399,7 @@ impl<S: Clone> Continuation<S> {
         }
         let mut state = from.state.clone();
         let [correction, rate] = &mut self.scratch;
-        let _ = equations.linearize(&mut state, from.factor, correction, rate);
+        let _ = equations.linearize(&mut state, from.factor, None, correction, rate);
         let stiffness = |mode: Option<CriticalMode>| mode.map(|mode| mode.stiffness);
         let (Some(first), Some(last)) = (stiffness(equations.critical_mode()), stiffness(beyond)) else { return best };
         let (mut low, mut high, mut was_good) = ((0.0, first), (step, last), true);
@@ -530,10 +541,11 @@ impl<S: Clone> Continuation<S> {
         let distance = (goal - near.factor) / near.slope;
         equations.advance(&mut state, &near.tangent, distance, [near.factor, goal]);
         let mut last: Option<f64> = None;
+        let mut stressed = self.stress_lags.then(|| near.state.clone());
         for _ in 0..MAX_CORRECTIONS {
             self.count()?;
             let [correction, rate] = &mut self.scratch;
-            let modes = equations.linearize(&mut state, goal, correction, rate)?;
+            let modes = equations.linearize(&mut state, goal, stressed.as_ref(), correction, rate)?;
             let size = (self.weight * dot(correction, correction)).sqrt();
             let first = (MAX_FIRST_CORRECTION * distance.abs()).max(RESIDUE);
             let allowed = last.map_or(first, |last| MAX_CONTRACTION * last);
@@ -541,6 +553,7 @@ impl<S: Clone> Continuation<S> {
                 return None;
             }
             equations.advance(&mut state, correction, 1.0, [goal; 2]);
+            stressed = stressed.map(|_| state.clone());
             last = Some(size);
             if size <= (CONVERGED * distance.abs()).max(1e-4 * RESIDUE) {
                 equations.complete(&mut state);
@@ -576,10 +589,12 @@ impl<S: Clone> Continuation<S> {
         }
         equations.advance(&mut state, &from.tangent, step, [at, factor]);
         let (mut last, mut contraction): (Option<f64>, f64) = (None, 1e-3);
+        // Before the first correction the start of the step, then the state whose rotations the correction has not changed yet.
+        let mut stressed = self.stress_lags.then(|| from.state.clone());
         for _ in 0..MAX_CORRECTIONS {
             self.count()?;
             let [correction, rate] = &mut self.scratch;
-            let modes = equations.linearize(&mut state, factor, correction, rate)?;
+            let modes = equations.linearize(&mut state, factor, stressed.as_ref(), correction, rate)?;
             let [along, across] = [&*correction, &*rate].map(|v| self.weight * dot(&from.tangent, v));
             let by = -along / (across + from.slope);
             correction.iter_mut().zip(&*rate).for_each(|(c, r)| *c += by * r);
@@ -592,6 +607,7 @@ impl<S: Clone> Continuation<S> {
                 return None;
             }
             equations.advance(&mut state, correction, 1.0, [factor, factor + by]);
+            stressed = stressed.map(|_| state.clone());
             factor += by;
             // The prediction stretches a slender body, and a stretched body has another tangent: one small correction does
             // not prove convergence.

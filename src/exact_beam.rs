@@ -246,6 +246,7 @@ impl PathEquations for Shooting<'_> {
         &mut self,
         state: &mut Self::Configuration,
         factor: f64,
+        _: Option<&Self::Configuration>,
         correction: &mut [f64],
         rate: &mut [f64],
     ) -> Option<usize> {

@@ -16,13 +16,14 @@ use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, LinearSystem, Problem};
 use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure, dot};
-use crate::element::Tangent;
+use crate::element::{PointStress, Rotations, Tangent};
 use crate::format::engineering;
 use crate::rotation::Rotation;
 use crate::sentence::{Sentence, displayed, sentence};
+use crate::simd::LANES;
 use crate::solver::Factor;
 use crate::state::{State, largest_distance};
-use crate::step::{Iteration, Linearization, RotationUpdate, Workspace};
+use crate::step::{Iteration, Linearization, RotationUpdate, Workspace, warped_stress};
 use crate::timings::{Timings, timed};
 
 /// Equations of a body at rest under a growing load.
@@ -50,6 +51,38 @@ impl<'a> StaticEquations<'a> {
         let Self { problem, forces, workspace, timings, .. } = self;
         let wanted = Linearization::corotated(tangent, load_factor);
         Iteration { problem, state, forces, workspace, timings }.linearize(rotations, wanted);
+    }
+
+    /// Computes as [`Self::linearize_at`] the forces and the exact tangent of a state, but with the trace of strain of
+    /// another state, and its rotations, in G.
+    ///
+    /// A step along tangents stretches what it rotates, to second order. In a slender body this stretch is far larger than
+    /// that of the loads, and with it G would hide the bending stiffness. With the stress before the step, then to first
+    /// order after each correction, Newton's method converges in long steps, however slender the body (Magisano, Leonetti
+    /// and Garcea 2017).
+    fn linearize_with_stress(&mut self, state: &mut State, stressed: &State, load_factor: f64) {
+        let Self { problem, forces, workspace, timings, .. } = self;
+        let matrix = &mut workspace.linear.matrix;
+        timed(&mut timings.linearize, || {
+            let (elements, State { displacement: u, rotations, .. }) = (problem.system().elements(), stressed);
+            let mut traces = vec![0.0; rotations.len()];
+            // Of several points with the same rotation, the mean counts.
+            let share = rotations.len() as f64 / elements.point_count() as f64;
+            elements.visit_strains(problem.material().lame(), u, rotations, &mut |point, _, strain| {
+                traces[elements.rotation_of(point)] += share * strain.trace();
+            });
+            problem.system().rotate_edges(state, Kinematics::Corotated);
+            let State { displacement: u, rotations, .. } = &mut *state;
+            problem.sum(forces, Some((Tangent::EXACT, &mut *matrix)), |elements, lame, sums| {
+                let mut stress = warped_stress(lame, Rotations::Follow(rotations));
+                let trace = |points: [usize; LANES]| points.map(|point| traces[point]).into();
+                let look = |points: [usize; LANES], h: &_| PointStress { trace: trace(points), ..stress(points, h) };
+                elements.sweep(lame, u.view(), look, sums);
+            });
+            problem.add_load_stiffness(state, Tangent::EXACT, load_factor, matrix);
+            problem.balance(state, Kinematics::Corotated, load_factor, forces);
+        });
+        workspace.tangent = None;
     }
 }
 
@@ -128,10 +161,20 @@ impl PathEquations for StaticEquations<'_> {
         self.problem.system().update_rotations(state, Kinematics::Corotated);
     }
 
-    fn linearize(&mut self, state: &mut State, factor: f64, correction: &mut [f64], rate: &mut [f64]) -> Option<usize> {
+    fn linearize(
+        &mut self,
+        state: &mut State,
+        factor: f64,
+        stressed: Option<&State>,
+        correction: &mut [f64],
+        rate: &mut [f64],
+    ) -> Option<usize> {
         /// Relative residual that is only rounding error: next to a singular tangent, it must not become a correction.
         const BALANCED: f64 = 2e-15;
-        self.linearize_at(state, RotationUpdate::Follow, Tangent::EXACT, factor);
+        match stressed {
+            Some(stressed) => self.linearize_with_stress(state, stressed, factor),
+            None => self.linearize_at(state, RotationUpdate::Follow, Tangent::EXACT, factor),
+        }
         let Self { problem, forces, workspace, timings, .. } = self;
         if forces.relative_residual > BALANCED {
             problem.system().pattern().restrict(forces.residual(), correction);
@@ -378,9 +421,8 @@ impl PathFollower {
         let unit = 0.1 * equations.problem.system().size();
         let mut path = Continuation::start(equations, state, factor, unit, u32::MAX)?;
         path.max_by_factor = equations.problem.supports().largest_load_step();
-        if equations.problem.supports().move_the_body() {
-            path.places = PLACES;
-        }
+        let moves = equations.problem.supports().move_the_body();
+        (path.places, path.may_lag) = (if moves { PLACES } else { 0.0 }, !moves);
         let last = path.point.clone();
         let unstable_modes = last.modes;
         Some(Self {

@@ -226,6 +226,17 @@ fn the_default_limit_suffices_for_newton() {
     }
 }
 
+/// The path of a body a thousand times as long as high takes long steps, although each prediction stretches the body.
+#[test]
+fn the_path_of_a_slender_body_takes_long_steps() {
+    for element in [ElementKind::T6, ElementKind::Q4] {
+        let beam = Scene::beam(1e3, 1.0).with_cells(40, 2).with_element(element);
+        let scene = beam.with_material(Material::new(1e6, 0.3)).clamp("left").force("right", [0.0, -100.0]);
+        let iterations = solved(&scene.with_method(MethodKind::Newton)).iterations();
+        assert!(iterations <= 200, "{}: {iterations} iterations", element.id());
+    }
+}
+
 /// A moment that no equilibrium carries is reported, with the part reached, and without advice that does not help.
 #[test]
 fn an_impossible_load_is_not_followed_further() {
