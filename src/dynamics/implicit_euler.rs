@@ -4,7 +4,9 @@
 //! loses even more energy, mostly from motion that should not be damped: the first mode of a beam at 60 steps per
 //! second keeps 72 % of its energy per period.
 
-use super::stage::{MeanForce, Stage, Step};
+use nalgebra::Vector2;
+
+use super::stage::{Stage, Step};
 use super::step::{Solves, StepEnergy, StepError, combine, work};
 use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
@@ -55,7 +57,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if !*records_energy {
         return Ok(StepEnergy::default());
     }
-    let mut energies = solver.record(&stage, start, state, &MeanForce::OWN);
+    let mut energies = solver.record(&stage, [start, state], (Vector2::zeros(), 1.0));
     // ½ |Δv|² in the norm of M is the energy that the scheme removes from any non-uniform motion.
     let [change, momentum] = &mut solver.memory.scratch;
     combine(change, [(1.0, &state.velocity), (-1.0, &start.velocity)]);

@@ -45,19 +45,6 @@ pub(super) struct Stage<'a> {
     pub damping: f64,
 }
 
-/// Mean force of the mouse spring over a stage: `earlier`, N, from earlier stages, plus `share` times the force in this
-/// stage's equations.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MeanForce {
-    pub earlier: Vector2<f64>,
-    pub share: f64,
-}
-
-impl MeanForce {
-    /// Mean force of a step with a single stage.
-    pub const OWN: Self = Self { earlier: Vector2::new(0.0, 0.0), share: 1.0 };
-}
-
 /// Largest number of terms of a difference quotient.
 const TERMS: usize = 3;
 /// Number of solves after which the iteration of a stage fails; usually two to eight suffice.
@@ -70,13 +57,6 @@ const ACCURACY_OF_ITERATIONS: f64 = 0.05;
 const PROGRESS: f64 = 0.25;
 /// Relative rounding error of K u, a lower bound of residuals.
 const ROUNDING: f64 = 4e-16;
-
-/// Residual of a stage over the free unknowns, N.
-struct Residual {
-    norm: f64,
-    /// Reference value: the largest of the forces in the residual.
-    scale: f64,
-}
 
 /// Solver of stages.
 #[derive(Debug)]
@@ -131,22 +111,22 @@ impl StageSolver<'_> {
             let tangent = self.tangent(stage);
             // An iteration does not need the current matrix as long as the residual decreases fast.
             let old = solves > 0 && tolerance.is_some() && self.keeps_factors();
-            let residual = self.linearize(stage, tangent.filter(|_| !old), state);
-            if !residual.norm.is_finite() {
+            let [residual, scale] = self.linearize(stage, tangent.filter(|_| !old), state);
+            if !residual.is_finite() {
                 return Err(StepError::NotFinite);
             }
             let floor = self.rounding(state);
-            if solves > 0 && residual.norm <= (tolerance.unwrap_or(0.0) * residual.scale).max(floor) {
+            if solves > 0 && residual <= (tolerance.unwrap_or(0.0) * scale).max(floor) {
                 break;
             }
             if solves == most {
                 return Err(StepError::NotConverged(most));
             }
-            let gets_on = old && residual.norm <= PROGRESS * before;
+            let gets_on = old && residual <= PROGRESS * before;
             if old && !gets_on {
                 self.linearize(stage, tangent, state);
             }
-            before = residual.norm;
+            before = residual;
             self.correct(stage, tangent, gets_on, state)?;
             self.update_rotations(state);
         }
@@ -186,8 +166,8 @@ impl StageSolver<'_> {
         }
     }
 
-    /// Computes the residual force of a state, and the matrix if requested.
-    fn linearize(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> Residual {
+    /// Computes the residual force of a state, and the matrix if requested; returns as [`Self::residual`].
+    fn linearize(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> [f64; 2] {
         let mut timings = std::mem::take(self.timings);
         let residual = timed(&mut timings.linearize, || {
             let forces = self.residual(stage, tangent, state);
@@ -201,8 +181,9 @@ impl StageSolver<'_> {
     }
 
     /// Computes the residual force of a state into the memory's forces, and the elements' matrix if requested. Damping
-    /// and the mouse spring are included in the residual only.
-    fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> Residual {
+    /// and the mouse spring are included in the residual only. Returns its norm over the free unknowns, and the largest of
+    /// the forces in it, N.
+    fn residual(&mut self, stage: &Stage<'_>, tangent: Option<Tangent>, state: &State) -> [f64; 2] {
         let Memory { corrector, forces, free_flight, mean, scratch: [increment, momentum], .. } = &mut *self.memory;
         let (problem, system) = (&*self.problem, self.problem.system());
         let matrix = tangent.map(|tangent| (tangent, &mut corrector.linear.matrix));
@@ -241,7 +222,7 @@ impl StageSolver<'_> {
         }
         let norm = problem.system().pattern().norm(&forces.residual);
         self.memory.residual = if scale > 0.0 { norm / scale } else { 0.0 };
-        Residual { norm, scale }
+        [norm, scale]
     }
 
     /// Computes f_d into the memory.
@@ -440,9 +421,14 @@ impl StageSolver<'_> {
     ///
     /// The mouse spring is recorded with the mean force that the integrator applies, not with its force at the end
     /// velocity: a firm spring damps a light node within a step, and the end velocity of a trapezoidal stage then
-    /// alternates.
-    pub(super) fn record(&mut self, stage: &Stage<'_>, from: &State, state: &State, spring: &MeanForce) -> StepEnergy {
-        let spring = spring.earlier + self.applied_mouse_spring_force(stage, state) * spring.share;
+    /// alternates. The mean force is `earlier`, N, from earlier stages, plus `share` times that in this stage's equations.
+    pub(super) fn record(
+        &mut self,
+        stage: &Stage<'_>,
+        [from, state]: [&State; 2],
+        (earlier, share): (Vector2<f64>, f64),
+    ) -> StepEnergy {
+        let spring = earlier + self.applied_mouse_spring_force(stage, state) * share;
         self.residual(stage, None, state);
         let loads = self.problem.loads();
         let moved = |spring: &MouseSpring| spring.mean(&state.displacement) - spring.mean(&from.displacement);

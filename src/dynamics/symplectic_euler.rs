@@ -11,7 +11,7 @@ use super::{Inertia, IntegratorEntry};
 use crate::assembly::MouseSpring;
 use crate::element::StrainRate;
 use crate::scene::IntegratorKind;
-use crate::state::is_finite;
+use crate::state::{State, is_finite};
 use crate::timings::timed;
 
 pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
@@ -30,17 +30,13 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let h = *h;
     solver.problem.set_stage(start.time, &|pulse| pulse.mean(start.time, start.time + h));
     let lumped = solver.mass.lumped();
-    let pull = |spring: Option<&MouseSpring>, state: &_| {
-        let force = |spring: &MouseSpring| {
-            let crate::state::State { displacement, velocity, .. } = state;
-            spring.softened_force(spring.mean(displacement), spring.mean(velocity), lumped, h)
-        };
-        spring.map_or_else(Vector2::zeros, force)
+    let pull = |spring: &MouseSpring, State { displacement, velocity, .. }: &State| {
+        spring.softened_force(spring.mean(displacement), spring.mean(velocity), lumped, h)
     };
     let problem = &*solver.problem;
     let system = problem.system();
     let Memory { forces, damping, .. } = &mut *solver.memory;
-    let spring_at_start = pull(problem.mouse_spring(), start);
+    let spring_at_start = problem.mouse_spring().map_or_else(Vector2::zeros, |spring| pull(spring, start));
     timed(&mut solver.timings.linearize, || {
         problem.linearize(start, forces, None);
         problem.loads().force(system, &start.displacement, solver.kinematics, 1.0, &mut forces.external);
@@ -80,14 +76,10 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let power: f64 = solver.memory.damping.iter().zip(&start.velocity).map(|(f, v)| f.dot(v)).sum();
     let dissipated = h * power;
     solver.problem.set_time(state.time);
-    let spring = solver.problem.mouse_spring();
-    let moved = spring
-        .map_or_else(Vector2::zeros, |spring| spring.mean(&state.displacement) - spring.mean(&start.displacement));
-    let spring = (spring_at_start + pull(spring, state)).dot(&moved) * 0.5;
-    Ok(StepEnergy {
-        dissipated,
-        lost: None,
-        pulses: solver.problem.loads().pulse_work([start, state]),
-        mouse_spring: spring,
-    })
+    let mouse_spring = solver.problem.mouse_spring().map_or(0.0, |spring| {
+        let moved = spring.mean(&state.displacement) - spring.mean(&start.displacement);
+        (spring_at_start + pull(spring, state)).dot(&moved) * 0.5
+    });
+    let pulses = solver.problem.loads().pulse_work([start, state]);
+    Ok(StepEnergy { dissipated, lost: None, pulses, mouse_spring })
 }

@@ -4,7 +4,7 @@
 //! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: modes that the step cannot resolve are
 //! damped, others hardly. Both stages have the same matrix up to the state at which it is evaluated.
 
-use super::stage::{MeanForce, Stage, Step};
+use super::stage::{Stage, Step};
 use super::step::{StepEnergy, StepError, combine};
 use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
@@ -65,8 +65,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     );
     state.time = start.time + g;
     if recorded {
-        let mean = MeanForce { earlier: spring_at_start * 0.5, share: 0.5 };
-        let stage = solver.record(&trapezoid, start, state, &mean);
+        let stage = solver.record(&trapezoid, [start, state], (spring_at_start * 0.5, 0.5));
         // The damping force of the stage is twice that of the step, because it acts over half of the stage's time.
         energies = StepEnergy { dissipated: 0.5 * stage.dissipated, lost: None, ..stage };
     }
@@ -115,7 +114,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     if *records_energy {
         // M (v₁ − v_g) = c₀ M (v_g − v₀) + w f₁ is the impulse of this stage.
         let earlier = (spring_at_start + spring_at_end) * (0.5 * g * c0 / (h - g));
-        let stage = solver.record(&backward, middle, state, &MeanForce { earlier, share: w / (h - g) });
+        let stage = solver.record(&backward, [middle, state], (earlier, w / (h - g)));
         energies.dissipated += stage.dissipated;
         energies.pulses += stage.pulses;
         energies.mouse_spring += stage.mouse_spring;

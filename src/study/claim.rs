@@ -1,12 +1,12 @@
 //! Claims: the statements that results make, each with the numbers that prove it. Commands, reports and the window take
 //! their words from here; `tests/physics/claims.rs` recomputes every kind by other means.
 
-use super::load_path::{LoadPath, PathEnd, PathSummary};
+use super::load_path::{LoadPath, PathSummary};
 use super::prelude::*;
 use super::ranking::Tuning;
 use super::reference::Reference;
 use super::trade::{Measurement, Study};
-use super::{Departure, LoadCurve};
+use super::{LoadCurve, Sample};
 use crate::method::{Bifurcation, Drive, Jump, PathEndReason};
 use crate::simulation::probe_results;
 
@@ -216,7 +216,7 @@ impl Claim {
         let jump = path.jump.map(|jump| (jump.factor, Self::jumps(jump, drive)));
         let mut events: Vec<(f64, Self)> = limit.into_iter().chain(bifurcations).chain(jump).collect();
         events.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let end = path.end.map(|PathEnd { factor, reason }| {
+        let end = path.end.map(|(factor, reason)| {
             let reason = match reason {
                 PathEndReason::NoEquilibrium => "no stable equilibrium was found there".to_owned(),
                 PathEndReason::Solves(most) => format!("the path took {most} solves until there"),
@@ -229,7 +229,7 @@ impl Claim {
 
     /// Returns the claims of a load–deflection curve: where linear theory fails, and where the exact beam ends.
     pub fn of_curve(curve: &LoadCurve) -> Vec<Self> {
-        let departure = |Departure { percent, at }: &Departure| {
+        let departure = |(percent, at): &(f64, Sample)| {
             let text = format!(
                 "linear theory differs by {percent} % at {} of the load: tip rotation {}, largest strain {}",
                 engineering(three_digits(100.0 * at.factor), "%"),

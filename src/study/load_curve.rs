@@ -37,15 +37,6 @@ impl Sample {
     }
 }
 
-/// Load at which the error of linear theory exceeds a limit.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Departure {
-    /// Limit, percent of the exact displacement.
-    pub percent: f64,
-    /// Interpolated sample at the limit.
-    pub at: Sample,
-}
-
 /// Result of a method at full load.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MethodPoint {
@@ -66,8 +57,9 @@ pub struct LoadCurve {
     pub samples: Vec<Sample>,
     /// Load factor at which the exact beam buckles, where the samples end; `None` if they reach the last load factor.
     pub buckles_at: Option<f64>,
-    /// Loads at which the error of linear theory exceeds 3, 5 and 10 percent, within the samples.
-    pub departures: Vec<Departure>,
+    /// Limits of the error of linear theory, 3, 5 and 10 percent of the exact displacement, that it exceeds within the
+    /// samples, each with the interpolated sample at the limit.
+    pub departures: Vec<(f64, Sample)>,
     /// Results of every method, on the scene's own mesh.
     pub methods: Vec<MethodPoint>,
 }
@@ -117,7 +109,7 @@ impl LoadCurve {
             }
             let pair = samples.windows(2).find(|w| w[1].linear_error_percent() > percent)?;
             let [from, to] = [0, 1].map(|i| pair[i].linear_error_percent());
-            Some(Departure { percent, at: pair[0].towards(&pair[1], ((percent - from) / (to - from)).clamp(0.0, 1.0)) })
+            Some((percent, pair[0].towards(&pair[1], ((percent - from) / (to - from)).clamp(0.0, 1.0))))
         };
         let departures = DEPARTURES.into_iter().filter_map(departure).collect();
         let mut methods = Vec::new();

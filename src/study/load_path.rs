@@ -32,16 +32,6 @@ pub struct PathState {
     pub unstable_modes: usize,
 }
 
-/// End of a path before the full load.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[non_exhaustive]
-pub struct PathEnd {
-    /// Load factor.
-    pub factor: f64,
-    /// Reason.
-    pub reason: PathEndReason,
-}
-
 /// Critical points of the load path from rest, and its end.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
@@ -127,8 +117,8 @@ pub struct LoadPath {
     pub drive: Drive,
     /// Work of moving supports along the path, J.
     pub supports_work: f64,
-    /// End of the path before the full load; `None` if it was followed to its end.
-    pub end: Option<PathEnd>,
+    /// Load factor at which the path ends before the full load, and the reason; `None` if it was followed to its end.
+    pub end: Option<(f64, PathEndReason)>,
 }
 
 /// Number of rows of a path, which are drawn and between which the work of supports is integrated.
@@ -364,7 +354,7 @@ impl Tracer {
         let (events, factor) = (follower.take_events(), follower.last.factor);
         self.mark();
         (self.path.jump, self.path.bifurcations) = (events.jump, events.bifurcations);
-        self.path.end = end.map(|reason| PathEnd { factor, reason });
+        self.path.end = end.map(|reason| (factor, reason));
         Some((self.path, self.end))
     }
 

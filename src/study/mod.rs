@@ -31,8 +31,8 @@ pub use colors::color;
 pub use fine::moved_points;
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;
-pub use load_curve::{Departure, LoadCurve, MethodPoint, Sample};
-pub use load_path::{LoadPath, PathEnd, PathFromRest, PathState, PathSummary, support_name, support_text};
+pub use load_curve::{LoadCurve, MethodPoint, Sample};
+pub use load_path::{LoadPath, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Tuning};

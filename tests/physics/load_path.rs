@@ -58,11 +58,11 @@ fn a_cancelled_path_is_reported_as_interrupted() {
         if asked.fetch_add(1, Ordering::Relaxed) < 19 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     let path = path.unwrap();
-    let end = path.end.unwrap();
-    assert_eq!(end.reason, PathEndReason::Interrupted);
+    let (factor, reason) = path.end.unwrap();
+    assert_eq!(reason, PathEndReason::Interrupted);
     let claims = Claim::of_path(&scene, &path);
     let text = claims.last().unwrap().to_string();
-    assert!(end.factor > 0.0 && end.factor < 1.0 && text.contains("interrupted"), "{text}");
+    assert!(factor > 0.0 && factor < 1.0 && text.contains("interrupted"), "{text}");
 }
 
 /// The command `curve` names the critical load, draws it, and calls states beyond it unstable; so does `solve`.

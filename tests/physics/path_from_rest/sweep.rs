@@ -130,7 +130,7 @@ fn differences(scene: &Scene) -> (Vec<String>, String) {
         }
     }
     let Some(mut small) = follow(&simulation, 1e-5) else { return (wrong, note + ", singular at rest") };
-    let reported = path.jump.map(|jump| jump.factor).or(path.end.map(|end| end.factor));
+    let reported = path.jump.map(|jump| jump.factor).or(path.end.map(|(factor, _)| factor));
     let events_off = |small: &SmallSteps| {
         let mut wrong = Vec::new();
         // A jump of about 1e-3 of the size may be stated or not.

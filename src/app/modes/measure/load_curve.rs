@@ -4,7 +4,7 @@
 use super::*;
 use crate::format::engineering_pair_among;
 use crate::study::path_chart::{self, Ordinate};
-use crate::study::{Departure, LoadCurve, LoadPath, PathState, Sample};
+use crate::study::{LoadCurve, LoadPath, PathState, Sample};
 
 /// Quantities that a load curve can show, each with its name and a description; the first only of a moving support.
 const PLOTS: [(Ordinate, &str, &str); 4] = [
@@ -124,7 +124,7 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: Ordinate) -> Figure {
         series(tr("linear beam theory").to_owned(), Ink::BeamTheory, Mark::Dashes, true, line(|s| s.linear)),
         series(tr("exact beam").to_owned(), Ink::BeamTheory, Mark::Line, false, line(|s| s.exact)),
     ];
-    let departures = curve.departures.iter().map(|d| figure::point(d.at.factor * full, d.at.exact)).collect();
+    let departures = curve.departures.iter().map(|(_, at)| figure::point(at.factor * full, at.exact)).collect();
     let departs = departure_text(&curve.departures, (full, unit));
     if let Some((name, _)) = &departs {
         all.push(series(name.clone(), Ink::BeamTheory, Mark::Ring, false, departures));
@@ -173,10 +173,10 @@ fn beam(curve: &LoadCurve, scene: &Scene, shown: Ordinate) -> Figure {
 }
 
 /// Returns the errors in percent at which linear theory departs from the exact beam, and the loads.
-fn departure_text(departures: &[Departure], (full, unit): (f64, &str)) -> Option<(String, String)> {
-    let each = |value: &dyn Fn(&Departure) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
-    let percent = each(&|departure| departure.percent.to_string());
-    let loads = each(&|departure| engineering(three_digits(departure.at.factor * full), unit));
+fn departure_text(departures: &[(f64, Sample)], (full, unit): (f64, &str)) -> Option<(String, String)> {
+    let each = |value: &dyn Fn(&(f64, Sample)) -> String| departures.iter().map(value).collect::<Vec<_>>().join(", ");
+    let percent = each(&|(percent, _)| percent.to_string());
+    let loads = each(&|(_, at)| engineering(three_digits(at.factor * full), unit));
     (!departures.is_empty())
         .then(|| (fill!("beam theory off by %{percent} %", percent), fill!("at %{load}", load = loads)))
 }
