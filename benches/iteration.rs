@@ -143,12 +143,12 @@ impl Faer {
     fn new(pattern: &Pattern) -> Self {
         let mut place = vec![0; pattern.dofs()];
         let mut order: Vec<usize> = (0..pattern.dofs()).collect();
-        order.sort_unstable_by_key(|&free| pattern.free()[free]);
+        order.sort_unstable_by_key(|&free| pattern.free[free]);
         order.iter().enumerate().for_each(|(i, &free)| place[free] = i);
         let mut entries = Vec::new();
-        for (column, bounds) in pattern.column_starts().windows(2).enumerate() {
+        for (column, bounds) in pattern.column_starts.windows(2).enumerate() {
             for i in bounds[0]..bounds[1] {
-                let (a, b) = (place[pattern.row_indices()[i]], place[column]);
+                let (a, b) = (place[pattern.row_indices[i]], place[column]);
                 entries.push((a.min(b), a.max(b), i));
             }
         }

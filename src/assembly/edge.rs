@@ -18,8 +18,11 @@ pub type NodeWeights = Vec<(u32, f64)>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
     name: String,
-    weights: NodeWeights,
-    arms: NodeWeights,
+    /// Nodes with their fraction of a uniform traction, ∫ Nₐ ds over the edge's length; the fractions sum to 1.
+    pub weights: NodeWeights,
+    /// Nodes with their weight cⱼ, 1/m, in the edge's direction d = Σ cⱼ xⱼ, which has length 1 at rest; empty if the edge
+    /// is not straight.
+    pub(super) arms: NodeWeights,
     direction: Vector2<f64>,
 }
 
@@ -49,21 +52,9 @@ impl Edge {
         &self.name
     }
 
-    /// Returns the nodes with their fraction of a uniform traction, ∫ Nₐ ds over the edge's length; the fractions sum
-    /// to 1.
-    pub fn weights(&self) -> &[(u32, f64)] {
-        &self.weights
-    }
-
     /// Returns `true` if the edge is straight at rest: only then does it have a direction and can carry a moment.
     pub fn is_straight(&self) -> bool {
         !self.arms.is_empty()
-    }
-
-    /// Returns the nodes with their weight cⱼ, 1/m, in the edge's direction d = Σ cⱼ xⱼ, which has length 1 at rest;
-    /// empty if the edge is not straight.
-    pub(super) fn arms(&self) -> &[(u32, f64)] {
-        &self.arms
     }
 
     /// Returns d = d₀ + Σ cⱼ uⱼ.

@@ -62,7 +62,7 @@ impl EdgeMoment {
         let scaled = gradient(edge, self.edge) * (factor * self.now);
         // If the edge has shrunk to a point, θ has no gradient and nothing is added.
         if scaled.iter().all(|v| v.is_finite()) {
-            for &(node, c) in edge.arms() {
+            for &(node, c) in &edge.arms {
                 force[node as usize] += scaled * c;
             }
         }
@@ -87,7 +87,7 @@ impl Loads {
                     (weights.into_iter().map(|(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }
                 Load::Force { place: Place::Edge(name), force, pulse, .. } => {
-                    let weights = system.edge(name, &key)?.1.weights();
+                    let weights = &system.edge(name, &key)?.1.weights;
                     (weights.iter().map(|&(node, weight)| (node, Vector2::from(*force) * weight)).collect(), pulse)
                 }
                 Load::Gravity { acceleration, pulse } => {
@@ -101,7 +101,7 @@ impl Loads {
                         let message = sentence!("expected a straight edge, got %{edge}, which is not straight", edge);
                         return Err(Invalid::new(format!("{key}.edge"), message));
                     }
-                    let nodes: Vec<u32> = straight.arms().iter().map(|&(node, _)| node).collect();
+                    let nodes: Vec<u32> = straight.arms.iter().map(|&(node, _)| node).collect();
                     let slots = system.pattern().block_slots(&nodes);
                     result.moments.push(EdgeMoment { edge, moment: *moment, pulse: *pulse, now: 0.0, slots });
                     continue;
@@ -206,12 +206,12 @@ impl Loads {
         for EdgeMoment { edge, .. } in &self.moments {
             let edge = &system.edges()[*edge];
             let direction = edge.direction(u);
-            let terms = edge.arms().iter().map(|&(node, c)| (u[node as usize] * c).abs()).sum::<Vector2<f64>>();
-            let off = (terms + direction.abs()) * (edge.arms().len() as f64 + 1.0) * UNIT;
+            let terms = edge.arms.iter().map(|&(node, c)| (u[node as usize] * c).abs()).sum::<Vector2<f64>>();
+            let off = (terms + direction.abs()) * (edge.arms.len() as f64 + 1.0) * UNIT;
             // The gradient of the angle is J d/|d|²: its relative error is at most three times that of d.
             let relative = 3.0 * off.norm() / direction.norm() + 8.0 * UNIT;
             if relative.is_finite() {
-                for &(node, _) in edge.arms() {
+                for &(node, _) in &edge.arms {
                     bound[node as usize] += Vector2::repeat(relative * external[node as usize].norm());
                 }
             }
@@ -261,7 +261,7 @@ impl Loads {
             let (p, q) = (2.0 * d.x * d.y, d.y * d.y - d.x * d.x);
             let hessian = Matrix2::new(p, q, q, -p) * (-factor * now / d.norm_squared().powi(2));
             if hessian.iter().all(|v| v.is_finite()) {
-                matrix.add_blocks(slots, edge.arms(), &hessian);
+                matrix.add_blocks(slots, &edge.arms, &hessian);
             }
         }
     }

@@ -10,10 +10,11 @@ use super::{Matrix, System};
 pub struct Mass {
     /// Σ ∫ ρ t NₐN_b dA for nodes b ≤ a that share an element, sorted.
     entries: Vec<MassEntry>,
-    /// Lumped mass of every node: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and
+    /// Lumped mass of every node, kg: the consistent diagonal of every element, scaled to its whole mass (Hinton, Rock and
     /// Zienkiewicz 1976). Unlike row sums it is positive for every element.
-    lumped: Vec<f64>,
-    total: f64,
+    pub lumped: Vec<f64>,
+    /// Mass of the whole body, kg.
+    pub total: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -73,16 +74,6 @@ impl Mass {
         Self { entries, lumped, total }
     }
 
-    /// Returns the mass of the whole body, kg.
-    pub fn total(&self) -> f64 {
-        self.total
-    }
-
-    /// Returns the lumped mass of every node, kg.
-    pub fn lumped(&self) -> &[f64] {
-        &self.lumped
-    }
-
     /// Computes result = M v over the nodes.
     pub fn multiply(&self, v: &[Vector2<f64>], result: &mut [Vector2<f64>]) {
         result.fill(Vector2::zeros());
@@ -102,7 +93,7 @@ impl Mass {
         const TOLERANCE: f64 = 1e-13;
         let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let scaled = |residual: &[f64]| -> Vec<f64> {
-            residual.iter().zip(pattern.free()).map(|(r, &unknown)| r / self.lumped[unknown as usize / 2]).collect()
+            residual.iter().zip(&pattern.free).map(|(r, &unknown)| r / self.lumped[unknown as usize / 2]).collect()
         };
         let (mut acceleration, mut momentum) = (vec![Vector2::zeros(); force.len()], force.to_vec());
         let mut residual = vec![0.0; pattern.dofs()];

@@ -21,7 +21,7 @@ pub struct Matrix {
 impl Matrix {
     /// Returns the zero matrix.
     pub fn new(pattern: &Pattern) -> Self {
-        let (entries, dependent) = (pattern.entries(), pattern.dependent_entries().clone());
+        let (entries, dependent) = (pattern.entries(), pattern.dependent_entries.clone());
         Self { values: vec![0.0; entries + 1 + dependent.entries], entries, dependent }
     }
 
@@ -66,16 +66,16 @@ impl Matrix {
     /// Iterates over the diagonal.
     pub(crate) fn diagonal<'a>(&'a self, pattern: &'a Pattern) -> impl Iterator<Item = f64> + 'a {
         // Rows are sorted, so the diagonal is the first entry of every column of the lower triangle.
-        pattern.column_starts()[..pattern.dofs()].iter().map(|&start| self.values[start])
+        pattern.column_starts[..pattern.dofs()].iter().map(|&start| self.values[start])
     }
 
     /// Computes y = K x.
     pub fn multiply(&self, pattern: &Pattern, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
-        for (column, bounds) in pattern.column_starts().windows(2).enumerate() {
+        for (column, bounds) in pattern.column_starts.windows(2).enumerate() {
             let entries = bounds[0]..bounds[1];
             let mut sum = 0.0;
-            for (&row, &value) in pattern.row_indices()[entries.clone()].iter().zip(&self.values[entries]) {
+            for (&row, &value) in pattern.row_indices[entries.clone()].iter().zip(&self.values[entries]) {
                 sum += value * x[row];
                 if row != column {
                     y[row] += value * x[column];

@@ -21,18 +21,21 @@ const FIXED: u32 = u32::MAX;
 /// factorization eliminates them, so that it permutes neither matrix nor vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    column_starts: Vec<usize>,
-    row_indices: Vec<usize>,
-    free: Vec<u32>,
+    /// Start of each column in [`Self::row_indices`], and the end of the last.
+    pub column_starts: Vec<usize>,
+    /// Row of every entry.
+    pub row_indices: Vec<usize>,
+    /// Unknown (2 · node + axis) of each free number.
+    pub free: Vec<u32>,
     /// Free number of each unknown, or [`FIXED`].
     free_of: Vec<u32>,
     /// 1 for free components of nodal vectors, 0 for fixed ones.
-    mask: Vec<Vector2<f64>>,
+    pub mask: Vec<Vector2<f64>>,
     /// Nodes with two free components, with the free number of the first.
     free_nodes: Vec<(u32, u32)>,
     /// Rows of T: unknowns that depend on free ones, with the free numbers and coefficients.
     dependent: Vec<(u32, Vec<(u32, f64)>)>,
-    dependent_entries: Arc<DependentEntries>,
+    pub(super) dependent_entries: Arc<DependentEntries>,
     /// Indices in [`DependentEntries`] of pairs of unknowns, smaller first.
     dependent_slots: BTreeMap<(u32, u32), u32>,
 }
@@ -154,11 +157,6 @@ impl Pattern {
         self.dependent_slots = slots;
     }
 
-    /// Returns the entries of dependent unknowns.
-    pub(super) fn dependent_entries(&self) -> &Arc<DependentEntries> {
-        &self.dependent_entries
-    }
-
     /// Returns the number of free unknowns.
     pub fn dofs(&self) -> usize {
         self.free.len()
@@ -167,26 +165,6 @@ impl Pattern {
     /// Returns the number of stored entries.
     pub fn entries(&self) -> usize {
         self.row_indices.len()
-    }
-
-    /// Returns the start of each column in [`Self::row_indices`], and the end of the last.
-    pub fn column_starts(&self) -> &[usize] {
-        &self.column_starts
-    }
-
-    /// Returns the row of every entry.
-    pub fn row_indices(&self) -> &[usize] {
-        &self.row_indices
-    }
-
-    /// Returns the unknown (2 · node + axis) of each free number.
-    pub fn free(&self) -> &[u32] {
-        &self.free
-    }
-
-    /// Returns 1 for free components of nodal vectors, 0 for fixed ones.
-    pub fn mask(&self) -> &[Vector2<f64>] {
-        &self.mask
     }
 
     /// Returns the nodes with two free components, with the free number of the first; the second has the next number.

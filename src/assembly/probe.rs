@@ -24,7 +24,7 @@ impl NodalProbe {
 
     fn new(probe: &Probe, system: &System, key: &str) -> Result<Self, Invalid> {
         let weights = match &probe.place {
-            Place::Edge(name) => system.edge(name, key)?.1.weights().to_vec(),
+            Place::Edge(name) => system.edge(name, key)?.1.weights.to_vec(),
             Place::At(at) => system.mesh().weights_at((*at).into()).ok_or_else(|| {
                 Invalid::new(format!("{key}.at"), format!("expected a point of the body, got {at:?} outside it"))
             })?,

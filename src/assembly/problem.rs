@@ -15,12 +15,12 @@ use crate::state::State;
 pub struct Problem {
     system: Arc<System>,
     material: Material,
-    /// Loads as in the scene, to detect changes.
-    scene_loads: Vec<Load>,
+    /// Loads as in the scene.
+    pub(crate) scene_loads: Vec<Load>,
     loads: Loads,
     supports: Supports,
     probes: Vec<NodalProbe>,
-    mouse_spring: Option<MouseSpring>,
+    pub(crate) mouse_spring: Option<MouseSpring>,
 }
 
 /// Extent of a change of the scene; each variant includes the ones before it.
@@ -40,11 +40,11 @@ pub enum Change {
 #[derive(Clone, Debug)]
 pub struct Forces {
     /// f_int, internal force of the elements.
-    pub(crate) internal: Vec<Vector2<f64>>,
+    pub internal: Vec<Vector2<f64>>,
     /// Σ|fₑ|, sum of the elements' absolute forces, by component.
-    pub(crate) magnitude: Vec<Vector2<f64>>,
+    pub magnitude: Vec<Vector2<f64>>,
     /// f_ext, external force of the loads.
-    pub(crate) external: Vec<Vector2<f64>>,
+    pub external: Vec<Vector2<f64>>,
     /// Residual force f_ext − f_int; on fixed unknowns it is minus the reaction.
     pub(crate) residual: Vec<Vector2<f64>>,
     /// The relative residual and the bound of its rounding error, if supports move the body and the residual is within
@@ -71,21 +71,6 @@ impl Forces {
     /// Returns f_ext − f_int of every node, N.
     pub fn residual(&self) -> &[Vector2<f64>] {
         &self.residual
-    }
-
-    /// Returns f_int of every node, N.
-    pub fn internal(&self) -> &[Vector2<f64>] {
-        &self.internal
-    }
-
-    /// Returns Σ|fₑ| of every node by component, N.
-    pub fn magnitude(&self) -> &[Vector2<f64>] {
-        &self.magnitude
-    }
-
-    /// Returns f_ext of every node, N.
-    pub fn external(&self) -> &[Vector2<f64>] {
-        &self.external
     }
 }
 
@@ -176,11 +161,6 @@ impl Problem {
         &self.loads
     }
 
-    /// Returns the loads of the scene.
-    pub(crate) fn scene_loads(&self) -> &[Load] {
-        &self.scene_loads
-    }
-
     /// Returns the supports, with their prescribed displacements.
     pub fn supports(&self) -> &Supports {
         &self.supports
@@ -189,10 +169,6 @@ impl Problem {
     /// Returns the mouse spring, if there is one.
     pub fn mouse_spring(&self) -> Option<&MouseSpring> {
         self.mouse_spring.as_ref()
-    }
-
-    pub(crate) fn mouse_spring_mut(&mut self) -> &mut Option<MouseSpring> {
-        &mut self.mouse_spring
     }
 
     /// Sets loads and mouse spring to a time, s.

@@ -128,11 +128,11 @@ impl Supports {
         let mut all: Vec<NodalSupport> = Vec::with_capacity(supports.len());
         for (i, support) in supports.iter().enumerate() {
             let key = format!("support.{i}");
-            let held = system.held_points().points.iter().find(|point| point.support == i);
+            let held = system.held.points.iter().find(|point| point.support == i);
             let nodes = if held.is_none() { nodes_of(support, mesh, &key)? } else { Vec::new() };
             let point = held.map(|point| point.axes);
             let weights = match (&support.place, held) {
-                (Place::Edge(name), _) => system.edge(name, &key)?.1.weights().to_vec(),
+                (Place::Edge(name), _) => system.edge(name, &key)?.1.weights.to_vec(),
                 (Place::At(_), Some(point)) => point.weights.clone(),
                 (Place::At(_), None) => nodes.iter().map(|&node| (node, 1.0)).collect(),
             };
@@ -165,7 +165,7 @@ impl Supports {
             all.push(new);
         }
         let moves = all.iter().any(NodalSupport::moves);
-        let held = system.held_points().clone();
+        let held = system.held.clone();
         let mut result = Self { all, held, moves, keeps_its_shape: true, largest_load_step: 1.0, diagonal: Vec::new() };
         result.check_redundant(system)?;
         if moves {
@@ -281,7 +281,7 @@ impl Supports {
     pub(super) fn rounding(&self, system: &System, u: &[Vector2<f64>]) -> f64 {
         /// A few times the unit roundoff.
         const ROUNDING: f64 = 2e-15;
-        let free = self.diagonal.iter().zip(system.pattern().free());
+        let free = self.diagonal.iter().zip(&system.pattern().free);
         let squares = free.map(|(k, &unknown)| (k * u[unknown as usize / 2][unknown as usize % 2]).powi(2));
         ROUNDING * squares.sum::<f64>().sqrt()
     }
@@ -409,7 +409,7 @@ impl Supports {
         let (mesh, u) = (system.mesh(), state.displacement.to_vec());
         let (before, motion) = (self.frame(mesh, factors[0]), self.frame_motion(mesh, factors));
         motion.apply(mesh, state);
-        for (node, mask) in system.pattern().mask().iter().enumerate().filter(|(_, mask)| mask.x != mask.y) {
+        for (node, mask) in system.pattern().mask.iter().enumerate().filter(|(_, mask)| mask.x != mask.y) {
             let x = mesh.nodes()[node];
             let by = motion.displacement(x + before.displacement(x)) - motion.displacement(x + u[node]);
             (0..2).for_each(|axis| state.displacement.advance(node, axis, by[axis] * mask[axis]));

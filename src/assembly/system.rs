@@ -123,7 +123,7 @@ pub struct System {
     body: Arc<MeshData>,
     supports: Vec<Support>,
     /// Equations of supports at points between nodes.
-    held: HeldPoints,
+    pub(super) held: HeldPoints,
     /// Rigid motions that the supports leave.
     hold: Hold,
     /// Indices of edges whose nodes are coupled, for moments.
@@ -223,7 +223,7 @@ impl System {
         check_held(hold, &body.mesh, scene.analysis)?;
         let coupled = moment_edges(&body.edges, scene);
         let groups: Vec<Vec<u32>> =
-            coupled.iter().map(|&edge| body.edges[edge].weights().iter().map(|&(node, _)| node).collect()).collect();
+            coupled.iter().map(|&edge| body.edges[edge].weights.iter().map(|&(node, _)| node).collect()).collect();
         let pattern = Pattern::new(&body.mesh, &fixed, &held, &groups);
         let supports = scene.supports.clone();
         let (slots, symbolic) = (OnceLock::new(), OnceLock::new());
@@ -261,11 +261,6 @@ impl System {
     /// Returns free unknowns and sparsity.
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
-    }
-
-    /// Returns the equations of supports at points between nodes.
-    pub(super) fn held_points(&self) -> &HeldPoints {
-        &self.held
     }
 
     /// Returns sentences about places where the elements of a mesh that is not a beam's meet without sharing nodes.
@@ -315,7 +310,7 @@ impl System {
         if let Some(symbolic) = self.symbolic.get() {
             return Ok(symbolic);
         }
-        let symbolic = Symbolic::new(self.pattern.column_starts(), self.pattern.row_indices())?;
+        let symbolic = Symbolic::new(&self.pattern.column_starts, &self.pattern.row_indices)?;
         Ok(self.symbolic.get_or_init(|| symbolic))
     }
 

@@ -67,7 +67,7 @@ impl Ledger {
         self.kinetic = 0.5
             * match inertia {
                 Inertia::Consistent => mass.energy_product(&state.velocity),
-                Inertia::Lumped => state.velocity.iter().zip(mass.lumped()).map(|(v, m)| m * v.norm_squared()).sum(),
+                Inertia::Lumped => state.velocity.iter().zip(&mass.lumped).map(|(v, m)| m * v.norm_squared()).sum(),
             };
         self.elastic = problem.elastic_energy(state);
         self.potential = problem.loads().potential(state, 1.0);
@@ -191,7 +191,7 @@ impl Momentum {
         let mut nodal = state.velocity.clone();
         match inertia {
             Inertia::Consistent => mass.multiply(&state.velocity, &mut nodal),
-            Inertia::Lumped => nodal.iter_mut().zip(mass.lumped()).for_each(|(p, m)| *p *= *m),
+            Inertia::Lumped => nodal.iter_mut().zip(&mass.lumped).for_each(|(p, m)| *p *= *m),
         }
         let positions = problem.system().mesh().nodes().iter().zip(&state.displacement).map(|(x, u)| x + u);
         Self { linear: nodal.iter().sum(), angular: positions.zip(&nodal).map(|(x, p)| x.perp(p)).sum() }

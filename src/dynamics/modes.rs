@@ -43,7 +43,7 @@ pub fn lowest_frequency(problem: &Problem, mass: &Mass) -> Option<f64> {
 pub fn critical_step(problem: &Problem, mass: &Mass, damping: Damping) -> Option<f64> {
     let system = problem.system();
     let matrix = stiffness(problem);
-    let nodal: Vec<Vector2<f64>> = mass.lumped().iter().map(|&m| Vector2::repeat(m)).collect();
+    let nodal: Vec<Vector2<f64>> = mass.lumped.iter().map(|&m| Vector2::repeat(m)).collect();
     let mut lumped = vec![0.0; system.dofs()];
     // Without the constraints of held points: they only lower the frequencies of lumped masses.
     system.pattern().select(&nodal, &mut lumped);

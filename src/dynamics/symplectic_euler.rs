@@ -29,7 +29,7 @@ fn step(step: &mut Step<'_>) -> Result<StepEnergy, StepError> {
     let Step { solver, h, start, state, records_energy, .. } = step;
     let h = *h;
     solver.problem.set_stage(start.time, &|pulse| pulse.mean(start.time, start.time + h));
-    let lumped = solver.mass.lumped();
+    let lumped = &solver.mass.lumped;
     let pull = |spring: &MouseSpring, State { displacement, velocity, .. }: &State| {
         spring.softened_force(spring.mean(displacement), spring.mean(velocity), lumped, h)
     };

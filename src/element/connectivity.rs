@@ -5,7 +5,7 @@ use crate::simd::{LANES, Numbers, filled};
 /// Node numbers of elements with `N` nodes.
 #[derive(Debug)]
 pub(super) struct Connectivity<const N: usize> {
-    elements: Vec<[u32; N]>,
+    pub elements: Vec<[u32; N]>,
     /// Node numbers of the elements in all lanes, node by node.
     batches: Vec<[[u32; LANES]; N]>,
 }
@@ -19,16 +19,6 @@ impl<const N: usize> Connectivity<N> {
             std::array::from_fn(|a| own.map(|nodes| nodes[a]))
         });
         Self { batches: batches.collect(), elements: elements.to_vec() }
-    }
-
-    /// Returns the number of elements.
-    pub fn len(&self) -> usize {
-        self.elements.len()
-    }
-
-    /// Iterates over the node numbers of every element.
-    pub fn iter(&self) -> std::slice::Iter<'_, [u32; N]> {
-        self.elements.iter()
     }
 
     /// Iterates over the elements in SIMD batches.

@@ -274,7 +274,7 @@ impl IncompatibleQuads {
     /// Builds the elements from rest nodes (m) and node numbers; `element` is the registry entry of the quadrilateral.
     pub fn new(element: &ElementType, nodes: &[Vector2<f64>], connectivity: &[u32]) -> Self {
         let numbers = Connectivity::new(connectivity);
-        let points = numbers.iter().map(|own| {
+        let points = numbers.elements.iter().map(|own| {
             let rest = own.map(|n| nodes[n as usize]);
             std::array::from_fn(|i| {
                 let rule = element.points[i];
@@ -342,7 +342,7 @@ impl IncompatibleQuads {
 
     fn elements(&self) -> impl Iterator<Item = (&[u32; 4], Quad)> {
         let quads = self.quads.iter().flat_map(|quad| (0..LANES).map(move |lane| quad.lane(lane)));
-        self.nodes.iter().zip(quads)
+        self.nodes.elements.iter().zip(quads)
     }
 
     /// Iterates over the elements: nodes, rest geometry, and K over μ.
@@ -366,11 +366,11 @@ fn half_rotation<T: Number>([r0, r1]: [Rotation<T>; 2]) -> Rotation<T> {
 
 impl Elements for IncompatibleQuads {
     fn rotation_count(&self) -> usize {
-        self.nodes.len()
+        self.nodes.elements.len()
     }
 
     fn point_count(&self) -> usize {
-        4 * self.nodes.len()
+        4 * self.nodes.elements.len()
     }
 
     fn points_per_element(&self) -> usize {

@@ -44,7 +44,7 @@ impl<const N: usize, const Q: usize> Isoparametric<N, Q> {
     /// Iterates over the elements: nodes and quadrature points.
     fn elements(&self) -> impl Iterator<Item = (&[u32; N], impl Iterator<Item = QuadraturePoint<N>>)> {
         let points = self.points.iter().flat_map(|points| (0..LANES).map(move |lane| (points, lane)));
-        self.nodes.iter().zip(points.map(|(points, lane)| points.iter().map(move |point| point.lane(lane))))
+        self.nodes.elements.iter().zip(points.map(|(points, lane)| points.iter().map(move |point| point.lane(lane))))
     }
 
     /// See [`super::ElementLoops::sweep`]. Not inlined: the loops of all elements in one function are slower.
@@ -126,7 +126,7 @@ impl<const N: usize, const Q: usize> Elements for Isoparametric<N, Q> {
     }
 
     fn point_count(&self) -> usize {
-        Q * self.nodes.len()
+        Q * self.nodes.elements.len()
     }
 
     fn points_per_element(&self) -> usize {

@@ -108,7 +108,7 @@ pub fn support_stiffness(
         let force: f64 =
             increment.iter().zip(forces.residual()).map(|(increment, residual)| -increment.dot(residual)).sum();
         stiffness += force / (2.0 * h);
-        let magnitudes = increment.iter().zip(forces.magnitude());
+        let magnitudes = increment.iter().zip(&forces.magnitude);
         noise += magnitudes.map(|(increment, force)| increment.abs().dot(force)).sum::<f64>() * ROUNDING / (2.0 * H);
     }
     (stiffness.is_finite() && stiffness.abs() > noise).then_some(stiffness)

@@ -260,12 +260,12 @@ pub(super) fn softens(it: &mut Iteration<'_>) -> bool {
             }
             problem.update_and_linearize(trial, Kinematics::Corotated, forces, None);
             let dot = |f: &[Vector2<f64>]| nodal.iter().zip(f).map(|(d, f)| d.dot(f)).sum::<f64>();
-            let internal = dot(forces.internal());
+            let internal = dot(&forces.internal);
             if !loads_vary {
                 return [internal, 0.0];
             }
             problem.balance(trial, Kinematics::Corotated, step, forces);
-            [internal, dot(forces.external())]
+            [internal, dot(&forces.external)]
         };
         let ([ahead, pushes], [behind, pulls]) = (work(step), work(-2.0 * step));
         -(ahead + behind - (pushes - pulls)) / (step * (ahead - behind))

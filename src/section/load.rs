@@ -75,7 +75,7 @@ pub(super) fn beyond_nodes(
     }
     let factor = |pulse: &Option<Pulse>| balance.load_factor * pulse.as_ref().map_or(1.0, |pulse| pulse.factor(time));
     let mut gravity = Vector2::zeros();
-    for load in problem.scene_loads() {
+    for load in &problem.scene_loads {
         match load {
             Load::Gravity { acceleration, pulse } => gravity += Vector2::from(*acceleration) * factor(pulse),
             Load::Force { place: Place::Edge(name), force, pulse, .. } => {

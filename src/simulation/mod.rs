@@ -318,7 +318,7 @@ impl Simulation {
     /// body's size, in a motion also at 0.4 E times thickness times the size of the element, so that no throw inverts it.
     pub fn grab(&mut self, point: MaterialPoint) -> bool {
         let Body { scene, problem, state, .. } = &mut self.body;
-        let mass = Mass::new(problem.system(), scene.material.area_density()).total();
+        let mass = Mass::new(problem.system(), scene.material.area_density()).total;
         let axial = scene.material.young * scene.material.thickness;
         let most = match scene.analysis {
             Analysis::Static => f64::INFINITY,
@@ -332,7 +332,7 @@ impl Simulation {
         let delay = 2.0 * SPRING_DAMPING * (mass / stiffness).sqrt();
         let Some(mut spring) = MouseSpring::new(problem.system(), point, stiffness, delay, most) else { return false };
         spring.lead(spring.position(&state.displacement), state.time, 0.0);
-        *problem.mouse_spring_mut() = Some(spring);
+        problem.mouse_spring = Some(spring);
         self.pulled(false);
         true
     }
@@ -349,7 +349,7 @@ impl Simulation {
         }
         let Body { scene, problem, state, .. } = &mut self.body;
         let within = if scene.analysis == Analysis::Dynamic { scene.dynamics.time_step } else { 0.0 };
-        if let Some(spring) = problem.mouse_spring_mut() {
+        if let Some(spring) = &mut problem.mouse_spring {
             spring.lead(position, state.time, within);
             self.pulled(true);
         }
@@ -358,7 +358,7 @@ impl Simulation {
 
     /// Removes the mouse spring. Does nothing without one.
     pub fn release(&mut self) {
-        if self.body.problem.mouse_spring_mut().take().is_some() {
+        if self.body.problem.mouse_spring.take().is_some() {
             self.pulled(false);
         }
     }

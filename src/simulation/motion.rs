@@ -222,7 +222,7 @@ impl TimeStepping {
                         break;
                     }
                     if halvings >= FIRM
-                        && let Some(spring) = body.problem.mouse_spring_mut()
+                        && let Some(spring) = &mut body.problem.mouse_spring
                     {
                         spring.slip();
                     }
@@ -464,7 +464,7 @@ pub(super) fn start_of(scene: &Scene, problem: &Problem) -> State {
         return state;
     }
     let (mass, nodes) = (Mass::new(problem.system(), scene.material.area_density()), problem.system().mesh().nodes());
-    let centre = nodes.iter().zip(mass.lumped()).map(|(x, m)| x * *m).sum::<Vector2<f64>>() / mass.total();
+    let centre = nodes.iter().zip(&mass.lumped).map(|(x, m)| x * *m).sum::<Vector2<f64>>() / mass.total;
     for (v, x) in state.velocity.iter_mut().zip(nodes) {
         let arm = x - centre;
         *v = Vector2::from(velocity) + Vector2::new(-arm.y, arm.x) * spin;

@@ -71,7 +71,7 @@ impl Singularity {
             Load::Force { place, .. } => is_there(place),
             _ => false,
         };
-        if problem.scene_loads().iter().any(acts) {
+        if problem.scene_loads.iter().any(acts) {
             return Some(Self::PointForce);
         }
         let outline = mesh.outline();

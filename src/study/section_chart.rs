@@ -34,7 +34,7 @@ pub fn contexts(sections: &[Section], simulation: &Simulation) -> [Context; 3] {
     // The forces of a part without loads and supports are rounding errors of the whole body's.
     let mut whole: Vec<f64> = simulation.support_reactions().iter().map(|reaction| reaction.force.norm()).collect();
     // The residual is relative to the forces of single elements, which cancel in a section of a stiff beam.
-    whole.extend(simulation.forces().magnitude().iter().map(|force| force.norm()));
+    whole.extend(simulation.forces().magnitude.iter().map(|force| force.norm()));
     let forces = || {
         let own = sections.iter().flat_map(|section| [section.force.norm(), section.forces.moment.abs() / size]);
         own.chain(whole.iter().copied())

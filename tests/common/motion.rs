@@ -38,7 +38,7 @@ pub fn vibrating(scene: &Scene) -> (Simulation, f64) {
         system.pattern().add_free(unit, 1.0, &mut nodal);
         // Explicit integrators have lumped masses.
         if scene.dynamics.integrator.entry().is_explicit() {
-            moved = nodal.iter().zip(mass.lumped()).map(|(v, m)| v * *m).collect();
+            moved = nodal.iter().zip(&mass.lumped).map(|(v, m)| v * *m).collect();
         } else {
             mass.multiply(&nodal, &mut moved);
         }

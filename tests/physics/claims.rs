@@ -103,7 +103,7 @@ fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
     // A disturbance that is small in all iterations, and larger than rounding errors.
     let small = height * if rho > 1.0 { 1e-7 } else { 1e-3 };
     let (lowest, highest) = (1e-7 * height, 1e-3 * height);
-    let mask = equilibrium.system().pattern().mask();
+    let mask = &equilibrium.system().pattern().mask;
     let disturbed = at_rest.iter().zip(mask).enumerate().map(|(i, (u, mask))| {
         let push = |k: f64| ((i as f64 + k) * 0.754_877_666).fract() - 0.5;
         u + Vector2::new(push(0.0), push(0.3)).component_mul(&mask.map(|m| f64::from(m > 0.0))) * small

@@ -239,7 +239,7 @@ fn supports_fix_the_components_that_they_name() {
             _ => [false, false],
         };
         assert_eq!(pattern.fixed(node), expected, "at {x}");
-        assert_eq!([0, 1].map(|axis| pattern.mask()[node as usize][axis] == 0.0), expected);
+        assert_eq!([0, 1].map(|axis| pattern.mask[node as usize][axis] == 0.0), expected);
     }
     // The product of a nodal vector with one over the free unknowns: fixed unknowns do not count.
     let nodal: Vec<_> = mesh.nodes().iter().map(|x| Vector2::new(1.0 + x.x, 2.0 - 3.0 * x.y)).collect();
@@ -414,7 +414,7 @@ fn reactions_balance_moments_about_the_current_places() {
     assert!(unmoved.force.norm() < 1e-9 && unmoved.moment.abs() < 1e-9, "{unmoved:?}");
     let simulation = solved(&scene);
     let places = simulation.system().mesh().nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u);
-    let external = simulation.forces().external();
+    let external = &simulation.forces().external;
     let force: Vector2<f64> = external.iter().sum();
     let moment: f64 = places.zip(external).map(|(x, f)| x.perp(f)).sum();
     let reaction = simulation.solution().reaction;

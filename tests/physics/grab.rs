@@ -10,7 +10,7 @@ fn held(scene: &Scene) -> Simulation {
     let mesh = simulation.system().mesh();
     let free = |x: &&Vector2<f64>| {
         let system = simulation.system();
-        let fixed = mesh.nodes().iter().zip(system.pattern().mask()).filter(|(_, m)| m.sum() == 0.0).map(|(y, _)| y);
+        let fixed = mesh.nodes().iter().zip(&system.pattern().mask).filter(|(_, m)| m.sum() == 0.0).map(|(y, _)| y);
         fixed.map(|y| (*x - y).norm()).fold(f64::INFINITY, f64::min) > 0.2 * system.size()
     };
     let point = mesh.locate(*mesh.nodes().iter().rev().find(free).unwrap()).unwrap();
@@ -53,7 +53,7 @@ fn a_pulled_body_settles_where_the_spring_balances() {
                 let expected = spring.stiffness() * stretch.norm().min(spring.largest_force() / spring.stiffness());
                 assert!((force.norm() - expected).abs() < 1e-9 * expected, "{case}: {force} N");
                 assert!(force.norm() <= spring.largest_force() * (1.0 + 1e-12));
-                let loads: Vector2<f64> = simulation.forces().external().iter().sum();
+                let loads: Vector2<f64> = simulation.forces().external.iter().sum();
                 let reaction = simulation.solution().reaction.force;
                 // `auto` reports its error; the others solve to the tolerance.
                 let allowed = if method == MethodKind::Auto { 1e-2 } else { 1e-5 };
@@ -317,7 +317,7 @@ fn an_explicit_step_limits_the_stiffness_of_the_mouse_spring() {
             simulation.step();
         }
         assert_eq!(simulation.motion().unwrap().counts().halvings, 0);
-        let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped()[node as usize];
+        let mass = Mass::new(simulation.system(), scene.material.area_density()).lumped[node as usize];
         let (spring, _) = simulation.mouse_spring().unwrap();
         let (soft, own) = (0.25 * mass / (h * h), spring.stiffness());
         assert!(soft < 0.9 * own, "the step is too long for the hand as it is: {soft} {own}");

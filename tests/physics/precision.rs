@@ -183,7 +183,7 @@ impl Rounding {
         let mut bounds = forces.residual().to_vec();
         let bound = problem.residual_floor(state, &forces, &mut bounds).unwrap();
         let mesh = problem.system().mesh();
-        let (body, external) = ((mesh, state), forces.external());
+        let (body, external) = ((mesh, state), &forces.external);
         let (element, seen) = (mesh.element().entry(), (problem.material().membrane(), kinematics));
         let exact = match element.kind {
             ElementKind::T3 => exact_residual(body, external, |x, u| exact_forces::<3>(element, seen, x, u)),
@@ -193,7 +193,7 @@ impl Rounding {
         let pairs = exact.iter().zip(forces.residual());
         let off: Vec<_> = pairs.map(|(exact, found)| (found.map(Quad::from) - exact).map(|off| off.0)).collect();
         let pattern = problem.system().pattern();
-        for ((off, bound), mask) in off.iter().zip(&bounds).zip(pattern.mask()) {
+        for ((off, bound), mask) in off.iter().zip(&bounds).zip(&pattern.mask) {
             let off = off.component_mul(mask).abs();
             assert!(off.x <= bound.x && off.y <= bound.y, "{} {off:?} {bound:?}", element.id);
         }

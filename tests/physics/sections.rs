@@ -78,11 +78,11 @@ fn force_in_front(simulation: &Simulation, line: SectionLine) -> Vector2<f64> {
         }
     }
     // Reactions are minus the residual of fixed unknowns; moments act on the nodes of their edges.
-    let (forces, mask) = (simulation.forces(), simulation.system().pattern().mask());
+    let (forces, mask) = (simulation.forces(), &simulation.system().pattern().mask);
     let dead = simulation.problem().loads().dead_force();
     for (i, _) in mesh.nodes().iter().enumerate().filter(|(_, x)| is_in_front(**x)) {
         force -= forces.residual()[i].component_mul(&mask[i].map(|free| 1.0 - free));
-        force += forces.external()[i] - dead[i];
+        force += forces.external[i] - dead[i];
     }
     force
 }
@@ -105,7 +105,7 @@ fn from_both_sides(simulation: &Simulation, line: SectionLine) -> Option<([Secti
 
 /// Returns the largest force of the elements on a node, N: rounding errors are relative to it.
 fn largest_force(simulation: &Simulation) -> f64 {
-    simulation.forces().magnitude().iter().map(|f| f.norm()).fold(0.0, f64::max)
+    simulation.forces().magnitude.iter().map(|f| f.norm()).fold(0.0, f64::max)
 }
 
 /// The section seen from the other side has the opposite force and moment.

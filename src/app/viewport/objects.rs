@@ -191,7 +191,7 @@ pub(crate) const EDIT: &str = "body";
 
 /// Returns `true` if a load on this edge can move the body: supports do not fix the whole edge.
 pub(crate) fn is_free(system: &System, edge: &Edge) -> bool {
-    edge.weights().iter().any(|&(node, _)| system.pattern().fixed(node) != [true, true])
+    edge.weights.iter().any(|&(node, _)| system.pattern().fixed(node) != [true, true])
 }
 
 /// Returns `true` if the edge can carry a moment and rotate under it.

@@ -227,7 +227,7 @@ impl<'a> Judge<'a> {
             pattern.add_free(&self.free, 1.0, &mut u);
             if length <= 1e-8 * size {
                 let supports = self.forces.residual().iter().map(|f| -f).collect();
-                let forces = [self.forces.external().to_vec(), supports];
+                let forces = [self.forces.external.to_vec(), supports];
                 return Some(Point { factor, u, forces, modes: self.factor.negative_eigenvalues() });
             }
             allowed = contraction * length;
