@@ -11,8 +11,6 @@ use super::limits::{self, Limit};
 pub struct Key {
     /// Path without list indices: `load.pulse.start`.
     pub path: &'static str,
-    /// Index of the key's own name in the path.
-    pub(super) name_at: usize,
     /// Kind and range of the value.
     pub kind: KeyKind,
     /// Condition under which the key must be given.
@@ -71,7 +69,7 @@ impl KeyKind {
 
 macro_rules! keys {
     ($($path:literal: $kind:expr, $need:expr, $example:literal, $about:literal;)*) => {
-        &[$(Key { path: $path, name_at: name_at($path), kind: $kind, need: $need, example: $example, about: $about }),*]
+        &[$(Key { path: $path, kind: $kind, need: $need, example: $example, about: $about }),*]
     };
 }
 
@@ -235,14 +233,6 @@ pub const fn range(path: &str) -> Limit {
             _ => i += 1,
         }
     }
-}
-
-const fn name_at(path: &str) -> usize {
-    let mut at = path.len();
-    while at > 0 && path.as_bytes()[at - 1] != b'.' {
-        at -= 1;
-    }
-    at
 }
 
 /// Compares texts, as `==` does outside of constants.

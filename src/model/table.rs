@@ -136,11 +136,10 @@ fn shown(value: &Value) -> String {
 
 /// Returns the keys of a table by its place, which is empty for the scene.
 pub(crate) fn keys_of(path: &str) -> impl Iterator<Item = &'static Key> {
-    let start = if path.is_empty() { 0 } else { path.len() + 1 };
-    KEYS.iter().filter(move |key| key.name_at == start && key.path.starts_with(path))
+    KEYS.iter().filter(move |key| key.path.rsplit_once('.').map_or("", |(table, _)| table) == path)
 }
 
 /// Returns the name of a key in its table.
 pub(crate) fn name_of(key: &Key) -> &'static str {
-    &key.path[key.name_at..]
+    key.path.rsplit_once('.').map_or(key.path, |(_, name)| name)
 }

@@ -283,19 +283,16 @@ fn with_power(text: &str) -> Option<(Scale, i32)> {
     }
     let is_power = |c: char| c.is_ascii_digit() || "^-\u{207b}¹²³".contains(c);
     let unit = text.trim_end_matches(is_power);
-    let power: String = text.get(unit.len()..)?.chars().map(plain_digit).collect();
-    let power: i32 = power.strip_prefix('^').unwrap_or(&power).parse().ok()?;
-    Some((with_prefix(unit)?, power)).filter(|_| (1..=4).contains(&power.abs()))
-}
-
-fn plain_digit(c: char) -> char {
-    match c {
+    let power = text.get(unit.len()..)?.chars().map(|c| match c {
         '\u{207b}' => '-',
         '¹' => '1',
         '²' => '2',
         '³' => '3',
         c => c,
-    }
+    });
+    let power: String = power.collect();
+    let power: i32 = power.strip_prefix('^').unwrap_or(&power).parse().ok()?;
+    Some((with_prefix(unit)?, power)).filter(|_| (1..=4).contains(&power.abs()))
 }
 
 fn with_prefix(text: &str) -> Option<Scale> {

@@ -26,10 +26,8 @@ impl Scene {
     pub fn mesh_file(file: &str, folder: impl AsRef<Path>) -> Result<Self, SceneError> {
         let mesh = MeshFile { file: file.to_owned(), element: None, scale: None, text: None };
         let mut scene = Self { mesh: Some(mesh), ..Self::named(file) };
-        match read_mesh(&mut scene, folder.as_ref()) {
-            Ok(()) => Ok(scene),
-            Err(invalid) => Err(SceneError::Invalid { file: None, line: None, invalid }),
-        }
+        let read = read_mesh(&mut scene, folder.as_ref());
+        read.map(|()| scene).map_err(|invalid| SceneError::Invalid { file: None, line: None, invalid })
     }
 
     /// Returns the element types possible for the scene's mesh: all for a beam, those of the same shape for a mesh
