@@ -159,20 +159,19 @@ impl Ledger {
     pub fn drift_warning(&self) -> Option<Sentence> {
         let drift = self.drift_of_input();
         let (energy, percent) = (engineering(self.integrator.abs(), "J"), percent(100.0 * drift.abs()));
-        if drift > MIN_NOTED_GAIN {
-            return Some(sentence!(
+        match drift {
+            _ if drift > MIN_NOTED_GAIN => Some(sentence!(
                 "the integrator gained %{energy}, %{percent} of the energy put in: the time step is too long",
                 energy,
                 percent
-            ));
-        }
-        (drift < -MIN_NOTED_LOSS).then(|| {
-            sentence!(
+            )),
+            _ if drift < -MIN_NOTED_LOSS => Some(sentence!(
                 "the integrator lost %{energy}, %{percent} of the energy put in: shorter time steps lose less",
                 energy,
                 percent
-            )
-        })
+            )),
+            _ => None,
+        }
     }
 }
 

@@ -82,13 +82,11 @@ impl From<&StepError> for Sentence {
 impl From<&StopReason> for Sentence {
     fn from(reason: &StopReason) -> Self {
         match reason {
-            StopReason::Step { step, error } => {
-                sentence!(
-                    "a time step failed even when shortened to %{step}: %{error}",
-                    step = engineering(three_digits(*step), "s"),
-                    error
-                )
-            }
+            StopReason::Step { step, error } => sentence!(
+                "a time step failed even when shortened to %{step}: %{error}",
+                step = engineering(three_digits(*step), "s"),
+                error
+            ),
             StopReason::Exploded { step, critical } => sentence!(
                 "the motion exploded: the time step of %{step} is too long; near rest, the critical one is about \
                  %{critical}",
