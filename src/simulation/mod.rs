@@ -37,9 +37,7 @@ pub use point::{PointState, PointValues};
 #[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub(crate) use results::ProbeStress;
 use results::area_change;
-pub use results::{
-    Deformation, Energy, ProbeResult, StressResult, SupportReaction, probe_results, reaction, support_reactions,
-};
+pub use results::{Deformation, Energy, ProbeResult, StressResult, SupportReaction, probe_results, support_reactions};
 pub use status::Status;
 
 /// Results of a state; [`Motion`] has further results of a motion.
@@ -69,7 +67,8 @@ pub struct Solution {
     pub probes: Vec<ProbeResult>,
     /// Energies.
     pub energy: Energy,
-    /// Total reaction of all supports, with the moment about the origin.
+    /// Total reaction of all supports, with the moment about the origin: of forces at rest positions in linear theory, else
+    /// at current ones.
     pub reaction: Wrench,
     /// Reaction of each support.
     pub supports: Vec<SupportReaction>,
@@ -256,17 +255,13 @@ impl Simulation {
     /// # Errors
     /// Same errors as [`Self::new`]; the simulation is then unchanged.
     pub fn change_scene(&mut self, scene: &Scene) -> Result<(), SimulationError> {
-        self.replace_scene(scene.clone())
-    }
-
-    fn replace_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let Self { body, process } = self;
-        let change = body.problem.update(&body.scene, &scene)?;
+        let change = body.problem.update(&body.scene, scene)?;
         if change == Change::Mesh {
-            *self = Self::with_problem(scene, body.problem.clone())?;
+            *self = Self::with_problem(scene.clone(), body.problem.clone())?;
             return Ok(());
         }
-        let before = std::mem::replace(&mut body.scene, scene);
+        let before = std::mem::replace(&mut body.scene, scene.clone());
         if body.scene.analysis != before.analysis {
             body.problem.set_time(0.0);
             let useful = body.is_useful_start(false);
@@ -293,7 +288,7 @@ impl Simulation {
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), Invalid>) -> Result<(), SimulationError> {
         let mut scene = self.body.scene.clone();
         change(&mut scene)?;
-        self.replace_scene(scene)
+        self.change_scene(&scene)
     }
 
     /// Attaches a mouse spring to a material point; its target is the current position until [`Self::pull_to`] is
@@ -494,6 +489,11 @@ impl Simulation {
         let load_factor = search.map_or(1.0, Equilibrium::load_factor);
         let (elastic, external) = (problem.elastic_energy(state), -problem.loads().potential(state, load_factor));
         let supports = self.support_reactions();
+        let mut reaction = Wrench::default();
+        for (support, own) in problem.supports().all().iter().zip(&supports) {
+            reaction.add(if self.is_linear() { support.middle } else { own.middle }, own.force);
+            reaction.moment += own.moment;
+        }
         Solution {
             dofs: problem.system().dofs(),
             status: self.body.status.clone(),
@@ -515,7 +515,7 @@ impl Simulation {
                     (true, false) => None,
                 },
             },
-            reaction: reaction(problem, self.kinematics(), &supports),
+            reaction,
             supports,
             auto: search.and_then(Equilibrium::auto_report),
         }

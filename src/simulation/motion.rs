@@ -200,7 +200,10 @@ impl TimeStepping {
         if matches!(body.status, Status::Stopped(_)) {
             return;
         }
-        let (whole, end) = next_step(&body.scene.dynamics, body.state.time);
+        let (time, &DynamicsSettings { time_step, duration, .. }) = (body.state.time, &body.scene.dynamics);
+        // The last step ends exactly at the duration.
+        let is_last = time < duration && time + time_step > duration - NO_TIME * time_step;
+        let (whole, end) = if is_last { (duration - time, duration) } else { (time_step, time + time_step) };
         body.last_iteration = Timings::default();
         let (mut halvings, mut left) = (0, 1_u32);
         let factorizations = self.counts.factorizations;
@@ -247,7 +250,13 @@ impl TimeStepping {
             self.decision = decision;
             *steps += 1;
             if largest(&body.state.displacement) > FARTHEST * body.problem.system().size() {
-                body.status = Status::Stopped(self.reason_to_run_away(whole));
+                // A step beyond the critical one, or one that adds energy, explodes.
+                body.status = Status::Stopped(match self.critical_step {
+                    Some(critical) if whole > critical || self.ledger.has_gained_too_much() => {
+                        StopReason::Exploded { step: whole, critical }
+                    }
+                    _ => StopReason::RanAway(FARTHEST),
+                });
             }
         }
         body.timings.add(&body.last_iteration);
@@ -346,16 +355,6 @@ impl TimeStepping {
         (settings.integrator.entry().step)(&mut step)
     }
 
-    /// Returns the reason why a node has moved too far: a step beyond the critical one, or one that adds energy.
-    fn reason_to_run_away(&self, step: f64) -> StopReason {
-        match self.critical_step {
-            Some(critical) if step > critical || self.ledger.has_gained_too_much() => {
-                StopReason::Exploded { step, critical }
-            }
-            _ => StopReason::RanAway(FARTHEST),
-        }
-    }
-
     pub(super) fn kinematics(&self) -> Kinematics {
         let linear = self.method == MotionMethod::Linear || self.linear.in_use;
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
@@ -425,17 +424,6 @@ impl TimeStepping {
             self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
         }
         self.keeps_ledger = keep;
-    }
-}
-
-/// Returns the length of the step that begins at a time, s, and its end time; the last step ends exactly at the
-/// duration.
-fn next_step(settings: &DynamicsSettings, time: f64) -> (f64, f64) {
-    let DynamicsSettings { time_step, duration, .. } = *settings;
-    if time < duration && time + time_step > duration - NO_TIME * time_step {
-        (duration - time, duration)
-    } else {
-        (time_step, time + time_step)
     }
 }
 

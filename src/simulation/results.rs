@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
-use crate::assembly::{Forces, Kinematics, Problem};
+use crate::assembly::{Forces, Kinematics, NodalProbe, Problem};
 use crate::scene::Place;
 use crate::section::Wrench;
 use crate::state::State;
@@ -105,24 +105,11 @@ pub fn area_change(problem: &Problem, state: &State) -> f64 {
 
 /// Returns the results of every probe of a problem for a state.
 pub fn probe_results(problem: &Problem, state: &State) -> Vec<ProbeResult> {
-    let mesh = problem.system().mesh();
-    let see = problem.probes().iter().map(|probe| {
+    let result = |probe: &NodalProbe| {
         let u = probe.mean(&state.displacement);
-        ProbeResult { name: probe.name.clone(), x: probe.mean(mesh.nodes()) + u, u }
-    });
-    see.collect()
-}
-
-/// Returns the sum of the reactions of all supports, with lever arms about the origin: those at rest in linear theory, else
-/// current ones.
-pub fn reaction(problem: &Problem, kinematics: Kinematics, reactions: &[SupportReaction]) -> Wrench {
-    let mut total = Wrench::default();
-    for (support, reaction) in problem.supports().all().iter().zip(reactions) {
-        let middle = if kinematics == Kinematics::Linear { support.middle } else { reaction.middle };
-        total.add(middle, reaction.force);
-        total.moment += reaction.moment;
-    }
-    total
+        ProbeResult { name: probe.name.clone(), x: probe.mean(problem.system().mesh().nodes()) + u, u }
+    };
+    problem.probes().iter().map(result).collect()
 }
 
 /// Returns the reaction of each support on the body: f_int − f_ext on the unknowns it fixes, or the force on its point.
