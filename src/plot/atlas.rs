@@ -23,9 +23,9 @@ pub fn atlas<C: Case>(entries: &[Entry<C>]) -> Drawing {
         MARGIN[1] + panel_size[1] * names.len() as f64,
     ]);
     for (i, outcome) in C::OUTCOMES.into_iter().enumerate() {
-        let x = 20.0 + LEGEND * i as f64;
-        drawing.rect([[x, 14.0], [14.0; 2]], Ink::Fixed(outcome.entry().1), 1.0);
-        text(&mut drawing, 12.0, [x + 20.0, 26.0], Anchor::Start, &outcome.id().replace('_', " "));
+        let (x, (id, color)) = (20.0 + LEGEND * i as f64, outcome.entry());
+        drawing.rect([[x, 14.0], [14.0; 2]], Ink::Fixed(color), 1.0);
+        text(&mut drawing, 12.0, [x + 20.0, 26.0], Anchor::Start, &id.replace('_', " "));
     }
     for (j, name) in names.iter().enumerate() {
         for (i, element) in ElementKind::all().enumerate() {

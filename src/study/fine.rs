@@ -175,7 +175,11 @@ fn on_fine_meshes(
     let simulation = finest.ok_or(StudyError::NoReference)?;
     // A state with inverted elements is not a solution of the continuous problem.
     let is_inverted = simulation.system().elements().smallest_area_ratio(simulation.displacement()) <= 0.0;
-    if is_inverted || !stands(&simulation)? {
+    let (problem, state) = (simulation.problem(), simulation.state());
+    let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
+    let mut forces = Forces::new(state.displacement().len());
+    // Descent of the energy may end in an unstable equilibrium.
+    if is_inverted || !is_stable(problem, state, 1.0, &mut forces, &mut workspace) {
         return Err(StudyError::NoReference);
     }
     let mut errors = errors(&solutions, has_point);
@@ -226,14 +230,6 @@ fn has_fold(scene: &Scene, simulation: &Simulation) -> bool {
             relative.y.atan2(relative.x).abs() > FOLDED
         })
     })
-}
-
-/// Returns `true` if the equilibrium is stable; descent of the energy may end in an unstable one.
-fn stands(simulation: &Simulation) -> Result<bool> {
-    let (problem, state) = (simulation.problem(), simulation.state());
-    let mut workspace = Workspace::new(simulation.system()).map_err(SimulationError::from)?;
-    let mut forces = Forces::new(state.displacement().len());
-    Ok(is_stable(problem, state, 1.0, &mut forces, &mut workspace))
 }
 
 /// Returns the bounds of the errors of the last solution, m, for each probe.
@@ -293,7 +289,11 @@ impl Meshes {
         }
         // The same nodes are used for the scene's points on every mesh, including the scene's own.
         let moved = moved_points(scene, &own);
-        snap(scene, &own);
+        for (_, place, width) in places(scene) {
+            if let (Place::At(at), None) = (place, width) {
+                *at = own.node(own.nearest_node((*at).into())).into();
+            }
+        }
         let straight = if own.element() == element { own } else { meshed(scene)? };
         Ok((Self { straight, arch: None }, moved))
     }
@@ -352,15 +352,6 @@ pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
         is_moved.then_some(MovedPoint { key, at, distance })
     };
     places(&mut scene.clone()).filter_map(moved).collect()
-}
-
-/// Moves the points of a scene to the nearest nodes of a mesh.
-fn snap(scene: &mut Scene, mesh: &Mesh) {
-    for (_, place, width) in places(scene) {
-        if let (Place::At(at), None) = (place, width) {
-            *at = mesh.node(mesh.nearest_node((*at).into())).into();
-        }
-    }
 }
 
 /// Returns the coarsest mesh of a beam's straight rectangle, with cells about as long as high if there are enough, with

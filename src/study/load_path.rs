@@ -11,7 +11,7 @@ use crate::method::{
     support_stiffness,
 };
 use crate::scene::Support;
-use crate::simulation::{Equilibrium, SupportReaction};
+use crate::simulation::{Equilibrium, SupportReaction, support_reactions};
 use crate::state::{State, largest, largest_distance};
 use crate::stress::LAW_HOLDS;
 
@@ -415,7 +415,9 @@ impl Tracer {
     /// Records the last equilibrium, unless it is recorded already.
     fn mark(&mut self) {
         let Some((point, stable)) = self.last.take() else { return };
-        let reactions = self.reactions(&point);
+        self.problem.linearize(&point.state, &mut self.forces, None);
+        self.problem.balance(&point.state, Kinematics::Corotated, point.factor, &mut self.forces);
+        let reactions = support_reactions(&self.problem, &point.state, Kinematics::Corotated, &self.forces);
         let probes = self.problem.probes().iter().map(|p| p.mean(&point.state.displacement)).collect();
         let state = PathState { factor: point.factor, probes, reactions, stable, unstable_modes: point.modes };
         if self.path.states.last() != Some(&state) {
@@ -448,13 +450,6 @@ impl Tracer {
             *side = point;
         }
         Some(if stable { low } else { high })
-    }
-
-    fn reactions(&mut self, point: &Point) -> Vec<SupportReaction> {
-        use Kinematics::Corotated;
-        self.problem.linearize(&point.state, &mut self.forces, None);
-        self.problem.balance(&point.state, Corotated, point.factor, &mut self.forces);
-        crate::simulation::support_reactions(&self.problem, &point.state, Corotated, &self.forces)
     }
 }
 

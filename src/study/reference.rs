@@ -196,7 +196,13 @@ impl Reference {
         moved: Vec<MovedPoint>,
         folds: bool,
     ) -> Self {
+        const STRAIGHT: f64 = 1e-9;
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
+        let mesh = finest.system().mesh();
+        let is_straight = |side: &Segment| {
+            let [a, b] = side.ends().map(|n| mesh.node(n));
+            side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
+        };
         let [rest_outline, outline] = outlines(finest);
         let lines = outline.iter().flatten().zip(rest_outline.iter().flatten());
         let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
@@ -206,7 +212,7 @@ impl Reference {
             linear: first_probe(linear).ok(),
             moved,
             folds,
-            is_polygon: scene.beam.is_none() && has_straight_sides(finest.system().mesh()),
+            is_polygon: scene.beam.is_none() && mesh.outline().iter().all(is_straight),
             unknowns: finest.system().dofs(),
             ..Self::default()
         };
@@ -341,15 +347,6 @@ pub(super) fn probes_of(simulation: &Simulation) -> Vec<Vector2<f64>> {
 pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>> {
     let probe = simulation.problem().probes().first().ok_or(StudyError::NoProbe)?;
     Ok(probe.mean(simulation.displacement()))
-}
-
-/// Returns `true` if no side of the outline is curved.
-fn has_straight_sides(mesh: &Mesh) -> bool {
-    const STRAIGHT: f64 = 1e-9;
-    mesh.outline().iter().all(|side| {
-        let [a, b] = side.ends().map(|n| mesh.node(n));
-        side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
-    })
 }
 
 /// Returns the closed outlines of a body at rest and in its state, m, node by node.

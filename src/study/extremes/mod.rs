@@ -56,11 +56,6 @@ impl Outcome {
         }
     }
 
-    /// Returns the identifier in tables.
-    pub fn id(self) -> &'static str {
-        self.entry().0
-    }
-
     /// Classifies the solution of a search or motion that has ended.
     fn of(solution: &Solution, drift: Option<f64>) -> Self {
         let is_certified = solution.certificate.is_some_and(|certificate| certificate.stable == Some(true));
@@ -174,7 +169,7 @@ pub(crate) fn labels<C, L: PartialEq>(entries: &[Entry<C>], label: impl Fn(&C) -
 /// Formats the counts of outcomes as text, with a row for each of these series.
 fn outcome_table<C: Case>(entries: &[Entry<C>], series: &[AtlasSeries]) -> String {
     let counts = counts(entries, |case| Some(case.series()));
-    let columns = C::OUTCOMES.map(|outcome| outcome.id().to_owned());
+    let columns = C::OUTCOMES.map(|outcome| outcome.entry().0.to_owned());
     text_table::<C>(series, &columns, 14, |series, column| Some(counts.get(series)?[column].to_string()))
 }
 

@@ -83,7 +83,7 @@ impl Case for MotionCase {
     }
 
     fn record(Entry { case, outcome, motion, tip: [x, y], .. }: &Entry<Self>) -> String {
-        let (element, integrator, outcome) = (case.element.id(), case.integrator.id(), outcome.id());
+        let (element, integrator, outcome) = (case.element.id(), case.integrator.id(), outcome.entry().0);
         let (MotionCase { iterations, time_step, gravity, .. }, young) = (case, number(case.young));
         let (Counts { steps, solves, halvings, .. }, drift) = motion.unwrap_or_default();
         format!(

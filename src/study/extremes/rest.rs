@@ -189,7 +189,7 @@ impl Case for RestCase {
 
     fn record(Entry { case, outcome, solution, tip: [x, y], .. }: &Entry<Self>) -> String {
         let RestCase { variant, alpha, young, poisson, slenderness, aspect, .. } = *case;
-        let (element, method, outcome) = (case.element.id(), case.method.id(), outcome.id());
+        let (element, method, outcome) = (case.element.id(), case.method.id(), outcome.entry().0);
         let Solution { iterations, residual, residual_floor, .. } = *solution;
         let start = if let Variant::Start(start) = variant { STARTS[start].0 } else { "rest" };
         let moved = variant == Variant::MovedTip;

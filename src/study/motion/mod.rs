@@ -51,10 +51,40 @@ pub(super) fn measure(
     let mass = Mass::new(system, of_mesh.material.area_density());
     let critical = critical_step(simulation.problem(), &mass, of_mesh.dynamics.damping);
     let settings = &settings(*mesh, critical, samples, extent);
-    // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
+    // The untimed part, path, energy and counts, runs first on all cores, so that the timed part runs alone on the machine.
+    // A long motion is shortened.
     let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
-    let first = parallel::all(settings, observe, [0.0, FIRST_RUNS_SHARE], &now, |setting, observe| {
-        first_run((&*study, samples, extent), scene, meshed, *setting, observe)
+    let to = FIRST_RUNS_SHARE;
+    let first = parallel::all(settings, observe, [0.0, to], &now, |&(setting, steps_of_sample), observe| {
+        let mut simulation = Simulation::with_system(&setting.apply(scene), system.clone())?;
+        let steps = u64::from(steps_of_sample) * u64::from(samples.count);
+        let is_cut = steps > u64::from(extent.pick(MAX_STEPS));
+        let (steps, path) = if is_cut {
+            run(&mut simulation, MIN_STEPS);
+            (MIN_STEPS, Vec::new())
+        } else {
+            (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
+        };
+        let is_stopped = matches!(simulation.status(), Status::Stopped(_));
+        let (converged, is_cut_short) = (!is_stopped && !is_cut, !is_stopped && is_cut);
+        let [_, rms_percent] = study.reference.distance(&path, None);
+        let is_linear = setting.method.moves_linearly();
+        let of_motion = simulation.motion().map(|motion| {
+            let ledger = motion.ledger();
+            (motion.counts(), 100.0 * ledger.drift(), 100.0 * ledger.drift_of_input())
+        });
+        let (counts, drift_percent, drift_of_input_percent) = of_motion.unwrap_or_default();
+        let measurement = Measurement {
+            setting,
+            dofs: system.dofs(),
+            converged,
+            milliseconds: 0.0,
+            error: converged.then(|| meshed.error(&path, is_linear, &study.reference)),
+            time: Timings::default(),
+            motion: Some(MotionFigures { is_cut_short, rms_percent, drift_percent, drift_of_input_percent, counts }),
+            pareto: false,
+        };
+        Ok((measurement, steps))
     })?;
     for (done, ((_, steps_of_sample), (mut measurement, steps))) in settings.iter().zip(first).enumerate() {
         let part = done as f64 / settings.len() as f64;
@@ -68,46 +98,6 @@ pub(super) fn measure(
         study.measurements.push(measurement);
     }
     Ok(())
-}
-
-/// Runs a setting without timing it, and records path, energy and counts. Returns its measurement without the time, and the
-/// number of its steps: a long motion is shortened.
-fn first_run(
-    (study, samples, extent): (&Study, Samples, Extent),
-    scene: &Scene,
-    meshed: &Meshed,
-    (setting, steps_of_sample): (Setting, u32),
-    observe: Observer<'_>,
-) -> Result<(Measurement, u32)> {
-    let mut simulation = Simulation::with_system(&setting.apply(scene), meshed.system.clone())?;
-    let steps = u64::from(steps_of_sample) * u64::from(samples.count);
-    let is_cut = steps > u64::from(extent.pick(MAX_STEPS));
-    let (steps, path) = if is_cut {
-        run(&mut simulation, MIN_STEPS);
-        (MIN_STEPS, Vec::new())
-    } else {
-        (steps as u32, path(&mut simulation, samples, steps_of_sample, observe, &mut |_| {})?)
-    };
-    let is_stopped = matches!(simulation.status(), Status::Stopped(_));
-    let (converged, is_cut_short) = (!is_stopped && !is_cut, !is_stopped && is_cut);
-    let [_, rms_percent] = study.reference.distance(&path, None);
-    let is_linear = setting.method.moves_linearly();
-    let of_motion = simulation.motion().map(|motion| {
-        let ledger = motion.ledger();
-        (motion.counts(), 100.0 * ledger.drift(), 100.0 * ledger.drift_of_input())
-    });
-    let (counts, drift_percent, drift_of_input_percent) = of_motion.unwrap_or_default();
-    let measurement = Measurement {
-        setting,
-        dofs: meshed.system.dofs(),
-        converged,
-        milliseconds: 0.0,
-        error: converged.then(|| meshed.error(&path, is_linear, &study.reference)),
-        time: Timings::default(),
-        motion: Some(MotionFigures { is_cut_short, rms_percent, drift_percent, drift_of_input_percent, counts }),
-        pareto: false,
-    };
-    Ok((measurement, steps))
 }
 
 /// Returns the computing time per simulated second of a scene's motion from its start, ms, measured over the time that a

@@ -126,23 +126,18 @@ pub(super) fn settings(mesh: Setting, critical: Option<f64>, samples: Samples, e
     for integrator in INTEGRATORS {
         for &steps in if integrator.is_explicit() { std::slice::from_ref(&stable) } else { extent.pick(STEPS) } {
             let stepping = Stepping { integrator: integrator.kind, time_step: interval / f64::from(steps) };
-            for method in methods(integrator, extent) {
+            // Without a matrix, methods differ only in the theory.
+            let differs = |method: MethodKind| match integrator.is_explicit() {
+                true => matches!(method, MethodKind::Linear | MethodKind::Newton),
+                false => extent == Extent::Full || method != MethodKind::Warped,
+            };
+            for method in METHODS.iter().map(|m| m.kind).filter(|&method| differs(method)) {
                 let of = |&iterations| (Setting { method, iterations, stepping: Some(stepping), ..mesh }, steps);
                 settings.extend(solves(integrator, method, extent).iter().map(of));
             }
         }
     }
     settings
-}
-
-/// Returns the methods that give different results.
-fn methods(integrator: &IntegratorEntry, extent: Extent) -> Vec<MethodKind> {
-    let all = METHODS.iter().map(|m| m.kind);
-    if integrator.is_explicit() {
-        // Without a matrix, methods differ only in the theory.
-        return vec![MethodKind::Linear, MethodKind::Newton];
-    }
-    all.filter(|&m| extent == Extent::Full || m != MethodKind::Warped).collect()
 }
 
 /// Returns the numbers of solves that give different results.
