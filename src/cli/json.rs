@@ -56,11 +56,11 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
         "max_strain": known(deformation.max_strain),
         "area_change_percent": known(100.0 * deformation.area_change),
         "inverted_elements": deformation.inverted_elements,
-        "max_von_mises": stress.largest.map(|largest| json!({
-            "value": largest.von_mises,
+        "max_von_mises": stress.largest.map(|(node, von_mises)| json!({
+            "value": von_mises,
             "stress": "cauchy",
-            "node": simulation.mesh().node_name(largest.node),
-            "at": largest.at,
+            "node": simulation.mesh().node_name(node),
+            "at": simulation.mesh().node(node),
         })),
         "mesh_error_percent": stress.mesh_error_percent,
         "mesh_error_of": "estimate: energy norm",

@@ -53,7 +53,7 @@ impl Contexts {
         let of_strain = strain.max(ROTATION * rotation);
         let components = |tensor: &PlaneTensor| tensor.components();
         let stresses = stress.probes.iter().filter_map(|probe| probe.cauchy.as_ref()).flat_map(components);
-        let largest = stress.largest.map_or(0.0, |largest| largest.von_mises);
+        let largest = stress.largest.map_or(0.0, |(_, von_mises)| von_mises);
         let displacements = solution.probes.iter().map(|probe| probe.u.norm());
         let prescribed = scene.supports.iter().flat_map(|support| support.displacement);
         let total = std::iter::once((solution.reaction.force.norm(), solution.reaction.moment));

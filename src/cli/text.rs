@@ -139,10 +139,10 @@ pub(super) fn solution(solved: &SolvedScene<'_>) -> String {
     let [strain, area] = [max_strain, area_change].map(|strain| within.percent(strain));
     let _ = write!(text, "largest rotation {rotation}, largest strain {strain}, change of the area {area}, ");
     let _ = writeln!(text, "inverted elements {inverted_elements}");
-    if let Some(largest) = stress.largest {
-        let node = simulation.mesh().node_name(largest.node).map_or_else(String::new, |node| format!(", node {node}"));
-        let (value, at) = (within.engineering(largest.von_mises, "Pa"), pair(largest.at, "m"));
-        let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{node}");
+    if let Some((node, von_mises)) = stress.largest {
+        let (value, at) = (within.engineering(von_mises, "Pa"), pair(simulation.mesh().node(node), "m"));
+        let name = simulation.mesh().node_name(node).map_or_else(String::new, |name| format!(", node {name}"));
+        let _ = writeln!(text, "largest von Mises (Cauchy) {value}, at {at} of the rest body{name}");
     }
     let _ = match stress.mesh_error_percent {
         Some(percent) => writeln!(text, "mesh error {percent:.2} % (estimate: energy norm)"),

@@ -96,10 +96,26 @@ impl Simulation {
                 Local::mean(own.into_iter())
             }
         };
+        // The antisymmetric part of the displacement gradient causes no strain in linear theory.
+        let spin = || {
+            let (mut own, mut at_points) = (0.0, Vec::new());
+            let (elements, lame) = (problem.system().elements(), material.lame());
+            elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
+                let spin = 0.5 * (h.m21 - h.m12);
+                own += spin * weight_of(mesh, point, q).unwrap_or(0.0);
+                at_points.push([spin]);
+            });
+            if values == PointValues::Recovered {
+                let mut nodal = Vec::new();
+                problem.system().recovery().recover(&at_points, &mut nodal);
+                own = nodes.iter().map(|&(n, w)| nodal[n as usize][0] * w).sum();
+            }
+            Matrix2::new(0.0, -own, own, 0.0)
+        };
         let stretch = Matrix2::identity() + local.strain;
         let gradient = match kinematics {
             Kinematics::Corotated => local.rotation.matrix() * stretch,
-            Kinematics::Linear => stretch + self.spin(point, values, &nodes),
+            Kinematics::Linear => stretch + spin(),
         };
         let sum = |nodal: &[Vector2<f64>]| nodes.iter().map(|&(n, w)| nodal[n as usize] * w).sum::<Vector2<f64>>();
         let result = PointState {
@@ -117,26 +133,6 @@ impl Simulation {
         };
         let numbers = gradient.iter().chain(&stretch).chain(&result.displacement);
         (numbers.copied().all(f64::is_finite) && result.strain.is_finite()).then_some(result)
-    }
-
-    /// Returns the antisymmetric part of the displacement gradient at a material point, which causes no strain in
-    /// linear theory.
-    fn spin(&self, point: MaterialPoint, values: PointValues, nodes: &[(u32, f64)]) -> Matrix2<f64> {
-        let (problem, state) = (self.problem(), self.state());
-        let system = problem.system();
-        let lame = problem.material().lame();
-        let (mut own, mut at_points) = (0.0, Vec::new());
-        system.elements().visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
-            let spin = 0.5 * (h.m21 - h.m12);
-            own += spin * weight_of(system.mesh(), point, q).unwrap_or(0.0);
-            at_points.push([spin]);
-        });
-        if values == PointValues::Recovered {
-            let mut nodal = Vec::new();
-            system.recovery().recover(&at_points, &mut nodal);
-            own = nodes.iter().map(|&(n, w)| nodal[n as usize][0] * w).sum();
-        }
-        Matrix2::new(0.0, -own, own, 0.0)
     }
 }
 

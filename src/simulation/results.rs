@@ -145,18 +145,6 @@ pub fn support_reactions(
     react.collect()
 }
 
-/// Largest von Mises stress of the recovered Cauchy stresses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct LargestStress {
-    /// Von Mises stress, Pa.
-    pub von_mises: f64,
-    /// Node number in the mesh; [`crate::Mesh::node_name`] returns the number for display.
-    pub node: u32,
-    /// Rest position of the node, m.
-    pub at: Vector2<f64>,
-}
-
 /// Strain and stress at a probe, computed from the mean of strain and rotation over its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -177,8 +165,8 @@ const ROUNDING: f64 = 1e-14;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StressResult {
-    /// Largest von Mises (Cauchy) stress; `None` if no node has one.
-    pub largest: Option<LargestStress>,
+    /// Largest von Mises (Cauchy) stress, Pa, after its node; `None` if no node has one.
+    pub largest: Option<(u32, f64)>,
     /// Cause of a mesh-dependent largest stress; `None` if the stress is bounded.
     pub singularity: Option<Singularity>,
     /// Stress at every probe.
@@ -190,7 +178,7 @@ pub struct StressResult {
 impl StressResult {
     /// Computes the results of a state from its recovered stresses.
     pub fn of(problem: &Problem, state: &State, nodal: &NodalStress) -> Self {
-        let (mesh, material) = (problem.system().mesh(), nodal.material());
+        let material = nodal.material();
         let probes = problem.probes().iter().map(|probe| {
             let local = nodal.mean(&probe.weights);
             ProbeStress {
@@ -205,11 +193,7 @@ impl StressResult {
             singularity: largest
                 .filter(|(_, von_mises)| *von_mises > ROUNDING * material.young)
                 .and_then(|(node, _)| Singularity::near(problem, node)),
-            largest: largest.map(|(node, von_mises)| LargestStress {
-                von_mises,
-                node,
-                at: mesh.nodes()[node as usize],
-            }),
+            largest,
             probes: probes.collect(),
             mesh_error_percent: ErrorEstimate::of(problem, state, nodal).percent,
         }

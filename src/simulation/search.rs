@@ -7,7 +7,7 @@ use crate::assembly::{Change, Forces, Kinematics, LARGEST_TURN};
 use crate::displacement::Displacement;
 use crate::element::UNIT;
 use crate::method::{Certificate, Criteria, Method, Reason, Restart, Verdict, Workspace, fixed_point_rho, is_stable};
-use crate::scene::{Scene, SolverSettings, Support};
+use crate::scene::{Scene, SolverSettings};
 use crate::solver::SolverError;
 use crate::state::largest;
 use crate::step::{Iteration, Linearization, Operation, RotationUpdate};
@@ -93,9 +93,15 @@ impl Search {
         }
         let same_method = body.scene.solver.method == before.solver.method;
         let same_unknowns = change <= Change::Stiffness;
+        // A rotation that is large, or was not completed, would leave the number of full rotations unknown.
+        let far = |angle: f64| angle.abs() > LARGEST_TURN;
+        let is_complete = body.status == Status::Converged;
+        let mut turns = before.supports.iter().zip(&body.scene.supports).map(|(a, b)| (a.turn, b.turn));
+        let can_follow =
+            before.supports == body.scene.supports || !turns.any(|(a, b)| far(b - a) || far(a) && !is_complete);
         let keeps_state = same_method
             && !matches!(body.status, Status::Diverged(_))
-            && can_follow(&body.status, &before.supports, &body.scene.supports)
+            && can_follow
             && body.is_useful_start(same_unknowns);
         if !same_method {
             self.method = (body.scene.solver.method.entry().start)();
@@ -256,14 +262,6 @@ impl Search {
     pub fn residual(&self) -> f64 {
         self.forces.below_rounding.map_or(self.forces.relative_residual, |[residual, _]| residual)
     }
-}
-
-/// Returns `true` if a search with this status can continue from its state with changed supports: not if they rotate far,
-/// or their rotation was not completed, because the number of full rotations would be unknown.
-fn can_follow(status: &Status, before: &[Support], after: &[Support]) -> bool {
-    let far = |angle: f64| angle.abs() > LARGEST_TURN;
-    let mut pairs = before.iter().zip(after);
-    before == after || !pairs.any(|(a, b)| far(b.turn - a.turn) || far(a.turn) && *status != Status::Converged)
 }
 
 fn iteration<'a>(

@@ -60,24 +60,22 @@ impl Simulation {
         lines.iter().copied().map(self.cutter(nodal.as_ref())).collect()
     }
 
-    /// Returns a function that computes the section along a line, with the stress along it if that was recovered.
+    /// Returns a function that computes the section along a line, with the stress along it if that was recovered; all
+    /// balance the same forces and accelerations.
     fn cutter(&self, nodal: Option<&NodalStress>) -> impl Fn(SectionLine) -> Result<Section, SectionError> {
-        let balance = LazyCell::new(|| self.nodal_balance());
+        let balance = LazyCell::new(|| {
+            let mouse_spring = self.mouse_spring().map_or_else(Vector2::zeros, |(_, force)| force);
+            match &self.process {
+                Process::Search(search) => NodalBalance {
+                    load_factor: search.load_factor(),
+                    residual: self.forces().residual().into(),
+                    mouse_spring: mouse_spring * search.load_factor(),
+                    motion: None,
+                },
+                Process::Motion(motion) => motion.nodal_balance(&self.body, mouse_spring),
+            }
+        });
         move |line| Section::of(self.problem(), self.state(), self.kinematics(), &balance, nodal, line)
-    }
-
-    /// Returns the forces and accelerations that sections balance.
-    fn nodal_balance(&self) -> NodalBalance<'_> {
-        let mouse_spring = self.mouse_spring().map_or_else(Vector2::zeros, |(_, force)| force);
-        match &self.process {
-            Process::Search(search) => NodalBalance {
-                load_factor: search.load_factor(),
-                residual: self.forces().residual().into(),
-                mouse_spring: mouse_spring * search.load_factor(),
-                motion: None,
-            },
-            Process::Motion(motion) => motion.nodal_balance(&self.body, mouse_spring),
-        }
     }
 
     /// Computes as [`Self::section`] the sections normal to the axis of a beam at `count` points, evenly spaced from

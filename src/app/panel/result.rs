@@ -127,9 +127,9 @@ fn quality_rows(row: &mut ResultRow<'_>, session: &Session) {
     let tip = "Error of the mesh alone, in the energy norm: the elements' stresses compared with those recovered at \
                the nodes";
     row("Error in energy", text, tip);
-    let text = quality.stress.largest.filter(|_| is_known).map(|largest| {
-        let stress = engineering(three_digits(largest.von_mises), "Pa");
-        let place = engineering_pair(largest.at.into(), "m");
+    let text = quality.stress.largest.filter(|_| is_known).map(|(node, von_mises)| {
+        let stress = engineering(three_digits(von_mises), "Pa");
+        let place = engineering_pair(session.drawn().mesh().node(node).into(), "m");
         match quality.stress.singularity {
             Some(_) => fill!("%{stress} at %{place}; depends on the mesh", stress, place),
             None => fill!("%{stress} at %{place}", stress, place),
