@@ -94,21 +94,13 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 /// Displacements of nodes as unevaluated sums of two numbers, m; see [`crate::State::compensated`].
 #[derive(Clone, Copy, Debug)]
 pub struct Compensated<'a> {
-    rounded: &'a [Vector2<f64>],
-    remainder: &'a [Vector2<f64>],
+    /// Rounded sums.
+    pub rounded: &'a [Vector2<f64>],
+    /// Rounding errors of [`Self::rounded`].
+    pub remainder: &'a [Vector2<f64>],
 }
 
-impl<'a> Compensated<'a> {
-    /// Returns the rounded sums.
-    pub fn rounded(&self) -> &'a [Vector2<f64>] {
-        self.rounded
-    }
-
-    /// Returns the rounding errors of [`Self::rounded`].
-    pub fn remainder(&self) -> &'a [Vector2<f64>] {
-        self.remainder
-    }
-
+impl Compensated<'_> {
     /// Returns the displacements of an element's nodes relative to its first one.
     #[inline(always)]
     pub(crate) fn relative<const N: usize>(&self, nodes: &[u32; N]) -> [Vector2<f64>; N] {

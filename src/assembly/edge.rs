@@ -14,6 +14,11 @@ use crate::sentence::sentence;
 /// Nodes with a weight each.
 pub type NodeWeights = Vec<(u32, f64)>;
 
+/// Returns the sum of a nodal field's values times the nodes' weights: the mean, or the value at a point.
+pub(crate) fn weighted_sum(nodal: &[Vector2<f64>], weights: &[(u32, f64)]) -> Vector2<f64> {
+    weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
+}
+
 /// Named edge of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
@@ -59,7 +64,7 @@ impl Edge {
 
     /// Returns d = d₀ + Σ cⱼ uⱼ.
     pub(super) fn direction(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
-        self.direction + self.sum(u)
+        self.direction + weighted_sum(u, &self.arms)
     }
 
     /// Returns the direction used for loads on the edge: the rest direction in linear theory, else the current one.
@@ -68,10 +73,6 @@ impl Edge {
             Kinematics::Corotated => self.direction(u),
             Kinematics::Linear => self.direction,
         }
-    }
-
-    fn sum(&self, u: &[Vector2<f64>]) -> Vector2<f64> {
-        self.arms.iter().map(|&(node, c)| u[node as usize] * c).sum()
     }
 
     /// Returns the angle between the edge's rest and current directions, rad, chosen nearest to `previous` among
@@ -86,7 +87,7 @@ impl Edge {
 
     /// Returns the rotation angle of linear theory, rad, which is linear in the displacement.
     pub(super) fn linear_angle(&self, u: &[Vector2<f64>]) -> f64 {
-        self.direction.perp(&self.sum(u))
+        self.direction.perp(&weighted_sum(u, &self.arms))
     }
 }
 
@@ -96,7 +97,7 @@ impl Edge {
 fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64>)> {
     /// Largest distance from the line, relative to the edge's size, that counts as straight.
     const STRAIGHT: f64 = 1e-6;
-    let middle: Vector2<f64> = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
+    let middle = weighted_sum(mesh.nodes(), weights);
     let from_middle = |node: u32| mesh.node(node) - middle;
     let farthest = weights.iter().map(|&(n, _)| from_middle(n)).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let size = farthest.norm();
@@ -110,7 +111,7 @@ fn arms(mesh: &Mesh, weights: &[(u32, f64)]) -> Option<(NodeWeights, Vector2<f64
     let distance = |node: u32| axis.dot(&from_middle(node));
     let second: f64 = weights.iter().map(|&(node, weight)| weight * distance(node).powi(2)).sum();
     let arms: NodeWeights = weights.iter().map(|&(node, weight)| (node, weight * distance(node) / second)).collect();
-    let direction: Vector2<f64> = arms.iter().map(|&(node, c)| mesh.node(node) * c).sum();
+    let direction = weighted_sum(mesh.nodes(), &arms);
     direction.iter().all(|v| v.is_finite()).then_some((arms, direction))
 }
 

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use super::NodeWeights;
+use super::edge::weighted_sum;
 use crate::mesh::Mesh;
 use crate::scene::{Axis, Place, Support};
 
@@ -87,7 +88,7 @@ fn point_weights(support: &Support, mesh: &Mesh) -> Option<NodeWeights> {
 pub(super) fn held_points(supports: &[Support], mesh: &Mesh) -> Vec<HeldPoint> {
     let held = supports.iter().enumerate().filter_map(|(i, support)| {
         let weights = point_weights(support, mesh)?;
-        let at = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
+        let at = weighted_sum(mesh.nodes(), &weights);
         Some(HeldPoint { support: i, at, weights, axes: axes(support) })
     });
     held.collect()

@@ -24,15 +24,6 @@ pub(super) fn fixed_unknowns(supports: &[Support], mesh: &Mesh, points: &[HeldPo
     Ok(fixed)
 }
 
-/// Rejects supports that leave no unknown; `dependent` is the number of unknowns that held points eliminate.
-pub(super) fn check_any_free(fixed: &[bool], dependent: usize) -> Result<(), Invalid> {
-    if fixed.iter().filter(|&&fixed| !fixed).count() <= dependent {
-        let message = sentence!("expected at least one node that can move, got supports that fix every node");
-        return Err(Invalid::new("support", message));
-    }
-    Ok(())
-}
-
 /// Returns the nodes of a support on nodes; `key` is its table in the scene.
 pub(super) fn nodes_of(support: &Support, mesh: &Mesh, key: &str) -> Result<Vec<u32>, Invalid> {
     match &support.place {

@@ -21,7 +21,7 @@ pub struct Matrix {
 impl Matrix {
     /// Returns the zero matrix.
     pub fn new(pattern: &Pattern) -> Self {
-        let (entries, dependent) = (pattern.entries(), pattern.dependent_entries.clone());
+        let (entries, dependent) = (pattern.row_indices.len(), pattern.dependent_entries.clone());
         Self { values: vec![0.0; entries + 1 + dependent.entries], entries, dependent }
     }
 

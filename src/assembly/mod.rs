@@ -20,6 +20,7 @@ mod problem;
 mod supports;
 mod system;
 
+pub(crate) use edge::weighted_sum;
 pub use edge::{Edge, NodeWeights};
 pub use kinematics::Kinematics;
 pub use linear_system::{IterationError, LinearSystem};

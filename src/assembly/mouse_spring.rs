@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::edge::weighted_sum;
 use super::{Matrix, NodeWeights, System};
 use crate::mesh::MaterialPoint;
 
@@ -51,7 +52,7 @@ impl MouseSpring {
         let mesh = system.mesh();
         let weights = mesh.weights(point)?;
         let nodes: Vec<u32> = weights.iter().map(|&(node, _)| node).collect();
-        let rest = weights.iter().map(|&(node, w)| mesh.node(node) * w).sum();
+        let rest = weighted_sum(mesh.nodes(), &weights);
         Some(Self {
             point,
             slots: system.pattern().block_slots(&nodes),
@@ -114,7 +115,7 @@ impl MouseSpring {
 
     /// Interpolates a nodal field at the point.
     pub(crate) fn mean(&self, nodal: &[Vector2<f64>]) -> Vector2<f64> {
-        self.weights.iter().map(|&(node, w)| nodal[node as usize] * w).sum()
+        weighted_sum(nodal, &self.weights)
     }
 
     /// Returns the position of the point for this displacement, m.

@@ -162,11 +162,6 @@ impl Pattern {
         self.free.len()
     }
 
-    /// Returns the number of stored entries.
-    pub fn entries(&self) -> usize {
-        self.row_indices.len()
-    }
-
     /// Returns the nodes with two free components, with the free number of the first; the second has the next number.
     pub fn free_nodes(&self) -> &[(u32, u32)] {
         &self.free_nodes
@@ -356,7 +351,7 @@ impl Pattern {
         if a != FIXED && b != FIXED {
             return self.free_slot(a, b);
         }
-        let outside = self.entries() as u32;
+        let outside = self.row_indices.len() as u32;
         self.dependent_slots.get(&(i.min(j), i.max(j))).map_or(outside, |slot| outside + 1 + slot)
     }
 

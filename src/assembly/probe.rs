@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::edge::weighted_sum;
 use super::{NodeWeights, System};
 use crate::scene::{Invalid, Place, Probe};
 
@@ -34,6 +35,6 @@ impl NodalProbe {
 
     /// Returns the weighted mean of a nodal field.
     pub fn mean(&self, field: &[Vector2<f64>]) -> Vector2<f64> {
-        self.weights.iter().map(|&(node, weight)| field[node as usize] * weight).sum()
+        weighted_sum(field, &self.weights)
     }
 }

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
+use super::edge::weighted_sum;
 use super::held_points::{Constraint, HeldPoints, axes};
 use super::hold::nodes_of;
 use super::pattern::component;
@@ -41,11 +42,6 @@ pub struct NodalSupport {
 }
 
 impl NodalSupport {
-    /// Returns a nodal field at the middle.
-    pub(crate) fn mean(&self, nodal: &[Vector2<f64>]) -> Vector2<f64> {
-        self.weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
-    }
-
     fn moves(&self) -> bool {
         self.rotation != 0.0 || self.displacement != Vector2::zeros()
     }
@@ -136,7 +132,7 @@ impl Supports {
                 (Place::At(_), Some(point)) => point.weights.clone(),
                 (Place::At(_), None) => nodes.iter().map(|&node| (node, 1.0)).collect(),
             };
-            let middle = weights.iter().map(|&(node, weight)| mesh.node(node) * weight).sum();
+            let middle = weighted_sum(mesh.nodes(), &weights);
             let place = support.place.clone();
             let (displacement, rotation) = (support.displacement.into(), support.turn);
             let width = support.width;
@@ -317,13 +313,9 @@ impl Supports {
 
     /// Returns `true` if the fixed components of a displacement are zero.
     pub(crate) fn are_at_rest(&self, u: &[Vector2<f64>]) -> bool {
-        self.fixed().all(|(node, axis)| u[node as usize][axis] == 0.0)
+        let mut nodes = self.all.iter().flat_map(|support| &support.nodes);
+        nodes.all(|&(node, own)| (0..2).all(|axis| !own[axis] || u[node as usize][axis] == 0.0))
             && self.points_are_at(0.0, Kinematics::Corotated, u)
-    }
-
-    fn fixed(&self) -> impl Iterator<Item = (u32, usize)> {
-        let nodes = self.all.iter().flat_map(|support| &support.nodes);
-        nodes.flat_map(|&(node, own)| (0..2).filter(move |&axis| own[axis]).map(move |axis| (node, axis)))
     }
 
     /// Returns the rigid motion that best approximates the motion of the fixed components from this displacement, or from
@@ -337,7 +329,7 @@ impl Supports {
         }
         let points = self.all.iter().filter_map(|support| {
             let target = support.middle + support.take(support.middle, factor, Kinematics::Corotated);
-            let now = support.middle + u.map_or_else(Vector2::zeros, |u| support.mean(u));
+            let now = support.middle + u.map_or_else(Vector2::zeros, |u| weighted_sum(u, &support.weights));
             Some([now, now.zip_zip_map(&target, &support.point?.into(), |now, to, fixed| if fixed { to } else { now })])
         });
         let increments: Vec<[Vector2<f64>; 2]> = increments.into_values().chain(points).collect();

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::edge::no_such_edge;
 use super::held_points::{HeldPoints, held_points};
-use super::hold::{Hold, check_any_free, check_held, fixed_unknowns};
+use super::hold::{Hold, check_held, fixed_unknowns};
 use super::{Edge, Kinematics, Pattern};
 use crate::element::ElementLoops;
 use crate::mesh::{Mesh, Recovery};
@@ -203,7 +203,7 @@ impl System {
             return Ok(Arc::new(Self::new(scene)?));
         }
         scene.validate_all_but_geometry(valid)?;
-        let couples = || self.moment_edges(scene).iter().all(|edge| self.coupled.contains(edge));
+        let couples = || moment_edges(&self.body.edges, scene).iter().all(|edge| self.coupled.contains(edge));
         let same_supports = scene.supports.len() == self.supports.len()
             && scene.supports.iter().zip(&self.supports).all(|(a, b)| a.fixes_as(b));
         if same_supports && couples() {
@@ -217,7 +217,10 @@ impl System {
         let points = held_points(&scene.supports, &body.mesh);
         let fixed = fixed_unknowns(&scene.supports, &body.mesh, &points)?;
         let held = HeldPoints::solve(points, &fixed);
-        check_any_free(&fixed, held.dependent.len())?;
+        if fixed.iter().filter(|&&fixed| !fixed).count() <= held.dependent.len() {
+            let message = sentence!("expected at least one node that can move, got supports that fix every node");
+            return Err(Invalid::new("support", message).into());
+        }
         let is_grid = matches!(body.origin, Origin::Beam(_));
         let hold = Hold::of(&body.mesh, &fixed, &held.points, is_grid);
         check_held(hold, &body.mesh, scene.analysis)?;
@@ -234,10 +237,6 @@ impl System {
     fn analysed(self) -> Result<Self, SimulationError> {
         self.symbolic().map_err(|_| SimulationError::TooLarge { unknowns: self.pattern.dofs() })?;
         Ok(self)
-    }
-
-    fn moment_edges(&self, scene: &Scene) -> Vec<usize> {
-        moment_edges(&self.body.edges, scene)
     }
 
     /// Returns the rest mesh.

@@ -28,7 +28,7 @@ impl Rounded {
 
     /// Returns the displacements of an element's nodes relative to its first one.
     pub fn relative<const N: usize>(u: Compensated<'_>, nodes: &[u32; N]) -> [Self; N] {
-        let remainder = nodes.map(|node| u.remainder()[node as usize].abs());
+        let remainder = nodes.map(|node| u.remainder[node as usize].abs());
         let mut own = [Self::ZERO; N];
         for ((own, value), left) in own.iter_mut().zip(u.relative(nodes)).zip(remainder) {
             *own = Self { value, error: (value.abs() + left + remainder[0]) * (2.0 * UNIT) };

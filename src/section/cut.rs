@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::assembly::NodeWeights;
+use crate::assembly::{NodeWeights, weighted_sum};
 use crate::element::lagrange;
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::model::SectionLine;
@@ -28,7 +28,8 @@ pub(super) struct Cut {
     pub elements: Vec<usize>,
     /// Points along the tangent, from one side of the outline to the other.
     pub points: Vec<CutPoint>,
-    side: Side,
+    /// Side of the cut on which nodes lie.
+    pub side: Side,
 }
 
 /// Side of a line on which nodes lie.
@@ -84,11 +85,6 @@ impl Side {
 }
 
 impl Cut {
-    /// Returns the side of the cut on which nodes lie.
-    pub fn side(&self) -> Side {
-        self.side
-    }
-
     /// Returns all cuts along a line. A node on the line belongs to the part behind it; if no node is in front, to the
     /// part in front.
     pub fn all(mesh: &Mesh, size: f64, line: SectionLine) -> Vec<Self> {
@@ -131,11 +127,6 @@ impl Cut {
     }
 }
 
-/// Interpolates a nodal field.
-pub(super) fn mean(nodal: &[Vector2<f64>], weights: &[(u32, f64)]) -> Vector2<f64> {
-    weights.iter().map(|&(node, weight)| nodal[node as usize] * weight).sum()
-}
-
 /// Returns the two points in which a line crosses the outline of an element, in the order of the tangent; `None` if the
 /// element's nodes are on one side.
 fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
@@ -152,7 +143,7 @@ fn crossing(mesh: &Mesh, nodes: &[u32], side: Side) -> Option<[CutPoint; 2]> {
                 .zip(lagrange(rest.len(), xi))
                 .map(|(&node, (weight, _))| (node, weight))
                 .collect();
-            CutPoint { along: side.along(mean(mesh.nodes(), &weights)), weights }
+            CutPoint { along: side.along(weighted_sum(mesh.nodes(), &weights)), weights }
         };
         side.crossings(&rest).into_iter().map(point).collect::<Vec<_>>()
     });

@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
 
-use super::cut::{Cut, Side, mean};
-use crate::assembly::{NodeWeights, Problem};
+use super::cut::{Cut, Side};
+use crate::assembly::{NodeWeights, Problem, weighted_sum};
 use crate::element::{Lame, integrate_side, side_weights};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::scene::{Load, Place, Pulse};
@@ -92,7 +92,8 @@ pub(super) fn beyond_nodes(
         let density = problem.material().area_density();
         for &element in &cut.elements {
             beyond.add_body_force(element, |weights| {
-                let inertia = acceleration.map_or_else(Vector2::zeros, |acceleration| mean(acceleration, weights));
+                let inertia =
+                    acceleration.map_or_else(Vector2::zeros, |acceleration| weighted_sum(acceleration, weights));
                 (gravity - inertia) * density
             });
         }
@@ -114,12 +115,12 @@ struct BeyondNodes<'a> {
 impl BeyondNodes<'_> {
     /// Adds a force, N, at an interpolated point.
     fn add(&mut self, weights: &[(u32, f64)], force: Vector2<f64>) {
-        self.sum.add(mean(self.positions, weights) - self.middle, force);
+        self.sum.add(weighted_sum(self.positions, weights) - self.middle, force);
     }
 
     /// Subtracts the parts of a force, N, on these nodes, as far as they are in front.
     fn subtract(&mut self, weights: &[(u32, f64)], force: Vector2<f64>) {
-        let side = self.cut.side();
+        let side = self.cut.side;
         for &(node, weight) in weights.iter().filter(|(node, _)| side.is_in_front(self.mesh.node(*node))) {
             self.sum.add(self.positions[node as usize] - self.middle, force * -weight);
         }
@@ -139,7 +140,7 @@ impl BeyondNodes<'_> {
             let (weights, force) = at_place(point.at, point.weight);
             self.subtract(&weights, force);
         }
-        for line in outline_in_front(mesh, element, &rest, self.cut.side()) {
+        for line in outline_in_front(mesh, element, &rest, self.cut.side) {
             visit_fan(&line, &mut |place, area| {
                 let (weights, force) = at_place(place.into(), area);
                 self.add(&weights, force);
@@ -163,7 +164,7 @@ impl BeyondNodes<'_> {
         }
         let Some(weights) = self.mesh.weights(point) else { return };
         self.subtract(&weights, force);
-        if self.cut.side().is_in_front(mean(self.mesh.nodes(), &weights)) {
+        if self.cut.side.is_in_front(weighted_sum(self.mesh.nodes(), &weights)) {
             self.add(&weights, force);
         }
     }
@@ -178,7 +179,7 @@ impl BeyondNodes<'_> {
         let per_length = total / length;
         let elements = cut.elements.iter().filter_map(|&element| mesh.elements().nth(element));
         let crossed: BTreeSet<[u32; 2]> = elements.flat_map(|nodes| mesh.sides(nodes)).map(|side| side.key()).collect();
-        let side = cut.side();
+        let side = cut.side;
         for segment in segments.iter().filter(|segment| crossed.contains(&segment.key())) {
             let nodes = rest(segment.nodes());
             let shares: NodeWeights = segment.nodes().iter().copied().zip(side_weights(&nodes)).collect();

@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::assembly::{Kinematics, Problem, System};
+use crate::assembly::{Kinematics, Problem, System, weighted_sum};
 use crate::element::{Rotations, StrainRate, Sums};
 use crate::mesh::{axis_angle, straightened};
 use crate::model::{Beam, SectionLine};
@@ -28,7 +28,7 @@ use crate::sentence::{Sentence, sentence};
 use crate::state::State;
 use crate::step::warped_stress;
 use crate::stress::NodalStress;
-use cut::{Cut, mean};
+use cut::Cut;
 pub use load::Wrench;
 use load::beyond_nodes;
 pub(crate) use load::{MotionBalance, NodalBalance};
@@ -152,9 +152,9 @@ impl Section {
         };
         let mut section = Self {
             line,
-            rest: [first, last].map(|point| mean(mesh.nodes(), &point.weights)),
-            ends: [first, last].map(|point| mean(&moved, &point.weights)),
-            axis: [first, last].map(|point| mean(positions, &point.weights)),
+            rest: [first, last].map(|point| weighted_sum(mesh.nodes(), &point.weights)),
+            ends: [first, last].map(|point| weighted_sum(&moved, &point.weights)),
+            axis: [first, last].map(|point| weighted_sum(positions, &point.weights)),
             force: Vector2::zeros(),
             forces: SectionForces::default(),
             stress_forces: SectionForces::default(),
@@ -205,12 +205,12 @@ impl Section {
         // Arm and traction per length, stress times thickness, at the point before; `None` after an undefined stress.
         let mut before: Option<(Vector2<f64>, [Vector2<f64>; 2])> = None;
         for point in &cut.points {
-            let at = mean(positions, &point.weights);
+            let at = weighted_sum(positions, &point.weights);
             let along = tangent.dot(&(at - middle));
             let local = nodal.mean(&point.weights);
             let stress = local.cauchy(material, nodal.kinematics()).map(|stress| stress.plane);
             self.points.push(SectionPoint {
-                rest: mean(mesh.nodes(), &point.weights),
+                rest: weighted_sum(mesh.nodes(), &point.weights),
                 along,
                 stress: stress.map(|stress| [normal, tangent].map(|axis| axis.dot(&(stress * normal)))),
                 beam: is_normal.then(|| self.beam_stress(material.thickness, along)),
@@ -282,6 +282,6 @@ fn element_forces(
     let mut nodes = connectivity;
     nodes.sort_unstable();
     nodes.dedup();
-    nodes.retain(|&node| cut.side().is_in_front(mesh.node(node)));
+    nodes.retain(|&node| cut.side.is_in_front(mesh.node(node)));
     nodes.into_iter().map(|node| (node, forces[node as usize])).collect()
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::Simulation;
 use super::field::Field;
-use crate::assembly::Kinematics;
+use crate::assembly::{Kinematics, weighted_sum};
 use crate::mesh::{MaterialPoint, Mesh};
 use crate::rotation::Rotation;
 use crate::scene::Material;
@@ -117,12 +117,11 @@ impl Simulation {
             Kinematics::Corotated => local.rotation.matrix() * stretch,
             Kinematics::Linear => stretch + spin(),
         };
-        let sum = |nodal: &[Vector2<f64>]| nodes.iter().map(|&(n, w)| nodal[n as usize] * w).sum::<Vector2<f64>>();
         let result = PointState {
             values,
             is_linear: kinematics == Kinematics::Linear,
-            rest: sum(mesh.nodes()),
-            displacement: sum(&state.displacement),
+            rest: weighted_sum(mesh.nodes(), &nodes),
+            displacement: weighted_sum(&state.displacement, &nodes),
             gradient,
             rotation: local.frame(kinematics),
             stretch,

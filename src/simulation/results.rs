@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
-use crate::assembly::{Forces, Kinematics, NodalProbe, Problem};
+use crate::assembly::{Forces, Kinematics, NodalProbe, Problem, weighted_sum};
 use crate::scene::Place;
 use crate::section::Wrench;
 use crate::state::State;
@@ -139,7 +139,7 @@ pub fn support_reactions(
             total.force += points.next().map_or_else(Vector2::zeros, |(_, force)| force);
         }
         let Wrench { force, moment } = total;
-        let middle = support.middle + support.mean(&state.displacement);
+        let middle = support.middle + weighted_sum(&state.displacement, &support.weights);
         SupportReaction { place: support.place.clone(), middle, force, moment }
     });
     react.collect()

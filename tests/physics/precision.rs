@@ -156,7 +156,7 @@ fn exact_residual<const N: usize>(
     forces: impl Fn(&[Vector2<f64>; N], &Vectors<N>) -> Vectors<N>,
 ) -> Vec<Vector2<Quad>> {
     let parts = state.compensated();
-    let both = |n: usize| parts.rounded()[n].map(Quad::from) + parts.remainder()[n].map(Quad::from);
+    let both = |n: usize| parts.rounded[n].map(Quad::from) + parts.remainder[n].map(Quad::from);
     let mut residual: Vec<_> = external.iter().map(|f| f.map(Quad::from)).collect();
     for nodes in mesh.elements() {
         let nodes: [usize; N] = std::array::from_fn(|a| nodes[a] as usize);

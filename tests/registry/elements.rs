@@ -557,9 +557,9 @@ fn damping_is_the_stiffness_at_rest_and_does_not_damp_rotation(kind: ElementKind
     let free = DVector::from_fn(n, |i, _| ((i * 7 % 11) as f64 - 5.0) * 0.1);
     let mut moving = rest.clone();
     system.pattern().add_free(free.as_slice(), 1.0, &mut moving);
-    let mut values = vec![0.0; system.pattern().entries() + 1];
+    let mut values = vec![0.0; system.pattern().row_indices.len() + 1];
     system.elements().viscous_matrix(moduli, u, system.slots(), &mut values);
-    values.truncate(system.pattern().entries());
+    values.truncate(system.pattern().row_indices.len());
     let mut dense = DMatrix::zeros(n, n);
     for (column, bounds) in system.pattern().column_starts.windows(2).enumerate() {
         let entries = bounds[0]..bounds[1];
