@@ -335,16 +335,6 @@ impl File {
         Ok(())
     }
 
-    fn check_flat(&self) -> Result<(), GmshError> {
-        let (distance, line) = self.out_of_plane;
-        let size = self.nodes.values().map(|x| x.amax()).fold(0.0, f64::max);
-        if distance <= FLAT * size {
-            return Ok(());
-        }
-        let expected = format!("a mesh in the plane z = 0, got z = {} m", number(distance));
-        Err(GmshError::Syntax { line, expected })
-    }
-
     /// Rejects elements with another shape than `entry`, with advice.
     fn check_shapes(&self, entry: &ElementType) -> Result<(), GmshError> {
         let mut others = self.elements.iter().filter(|(_, own, _)| !own.shares_cell(entry));
@@ -395,7 +385,12 @@ impl File {
             };
             return Err(GmshError::Content(message));
         }
-        self.check_flat()?;
+        let (distance, line) = self.out_of_plane;
+        let size = self.nodes.values().map(|x| x.amax()).fold(0.0, f64::max);
+        if distance > FLAT * size {
+            let expected = format!("a mesh in the plane z = 0, got z = {} m", number(distance));
+            return Err(GmshError::Syntax { line, expected });
+        }
         self.check_shapes(entry)?;
         self.check_doubles(entry)?;
         // A cell of a beam consists of two triangles.

@@ -109,11 +109,6 @@ impl Segment {
     pub fn key(&self) -> [u32; 2] {
         side_key(self.ends())
     }
-
-    /// Returns `true` if both have the same nodes, in the same or the opposite direction.
-    fn is_same(&self, other: &Self) -> bool {
-        self.nodes() == other.nodes() || self.nodes().iter().rev().eq(other.nodes())
-    }
 }
 
 /// Sorts two node numbers.
@@ -185,8 +180,10 @@ impl Mesh {
             }
             let corners: Vec<Vector2<f64>> =
                 own[..entry.cell.corners.len()].iter().map(|&n| self.nodes[n as usize]).collect();
-            let doubled_area = doubled_area(&corners);
-            let floor = DEGENERATE * largest_distance(&corners).powi(2);
+            let doubled_area: f64 = corners.windows(2).map(|w| (w[0] - corners[0]).perp(&(w[1] - corners[0]))).sum();
+            let distances =
+                corners.iter().enumerate().flat_map(|(i, a)| corners[..i].iter().map(move |b| (a - b).norm()));
+            let floor = DEGENERATE * distances.fold(0.0, f64::max).powi(2);
             if doubled_area.is_nan() || floor.is_infinite() || doubled_area.abs() <= floor {
                 return Err(MeshError::Degenerate { element, corners: corners.iter().map(|&x| x.into()).collect() });
             }
@@ -219,7 +216,10 @@ impl Mesh {
             }
         }
         for (name, segments) in &self.edges {
-            let is_side = |s: &Segment| wanted.get(&s.key()).is_some_and(|f| f.is_some_and(|side| side.is_same(s)));
+            let is_side = |s: &Segment| {
+                let side = wanted.get(&s.key()).copied().flatten();
+                side.is_some_and(|side| side.nodes() == s.nodes() || side.nodes().iter().rev().eq(s.nodes()))
+            };
             if let Some(segment) = segments.iter().find(|s| !is_side(s)) {
                 return Err(MeshError::NoSuchSide { edge: name.clone(), nodes: segment.nodes().to_vec() });
             }
@@ -449,15 +449,4 @@ fn unique(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
 fn outer(mut sides: Vec<Segment>) -> Vec<Segment> {
     sides.sort_unstable_by_key(Segment::key);
     sides.chunk_by(|a, b| a.key() == b.key()).filter(|same| same.len() == 1).map(|same| same[0]).collect()
-}
-
-/// Returns twice the area of a polygon, positive if it is counter-clockwise.
-fn doubled_area(corners: &[Vector2<f64>]) -> f64 {
-    let Some(&first) = corners.first() else { return 0.0 };
-    corners.windows(2).map(|w| (w[0] - first).perp(&(w[1] - first))).sum()
-}
-
-fn largest_distance(corners: &[Vector2<f64>]) -> f64 {
-    let pairs = corners.iter().enumerate().flat_map(|(i, a)| corners[..i].iter().map(move |b| (a - b).norm()));
-    pairs.fold(0.0, f64::max)
 }
