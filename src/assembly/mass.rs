@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::pattern::Pattern;
 use super::{Matrix, System};
+use crate::continuation::dot;
 
 /// Nodal masses of a body, kg.
 #[derive(Clone, Debug)]
@@ -91,7 +92,6 @@ impl Mass {
         // Conjugate gradients, preconditioned by the lumped masses: the condition does not depend on the mesh (Wathen 1987).
         const MAX_ITERATIONS: u32 = 200;
         const TOLERANCE: f64 = 1e-13;
-        let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let scaled = |residual: &[f64]| -> Vec<f64> {
             residual.iter().zip(&pattern.free).map(|(r, &unknown)| r / self.lumped[unknown as usize / 2]).collect()
         };
@@ -99,7 +99,7 @@ impl Mass {
         let mut residual = vec![0.0; pattern.dofs()];
         pattern.restrict(force, &mut residual);
         let mut direction = scaled(&residual);
-        let mut norm = product(&residual, &direction);
+        let mut norm = dot(&residual, &direction);
         let (goal, mut image) = (TOLERANCE * TOLERANCE * norm, residual.clone());
         for _ in 0..MAX_ITERATIONS {
             if norm.is_nan() || norm <= goal {
@@ -109,11 +109,11 @@ impl Mass {
             pattern.add_free(&direction, 1.0, &mut nodal);
             self.multiply(&nodal, &mut momentum);
             pattern.restrict(&momentum, &mut image);
-            let length = norm / product(&direction, &image);
+            let length = norm / dot(&direction, &image);
             acceleration.iter_mut().zip(&nodal).for_each(|(a, d)| *a += d * length);
             residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= i * length);
             let next = scaled(&residual);
-            let after = product(&residual, &next);
+            let after = dot(&residual, &next);
             direction.iter_mut().zip(&next).for_each(|(d, next)| *d = next + *d * (after / norm));
             norm = after;
         }

@@ -8,6 +8,7 @@
 use nalgebra::Vector2;
 
 use crate::assembly::{LinearSystem, Pattern, System};
+use crate::continuation::dot;
 use crate::rotation::Rotation;
 use crate::solver::SolverError;
 use crate::state::State;
@@ -202,10 +203,6 @@ impl Corrector {
         }
         (most, false)
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Rotates the vectors of nodes with two free components, forwards (1) or back (−1).
