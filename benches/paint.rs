@@ -12,7 +12,7 @@ use warpbeam::render::Gpu;
 use warpbeam::scene::{Source, open};
 
 fn frames(c: &mut Criterion) {
-    let Ok(gpu) = Gpu::headless() else {
+    let Ok(gpu) = Gpu::headless(None) else {
         eprintln!("no graphics adapter: nothing is drawn");
         return;
     };

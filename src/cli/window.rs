@@ -80,7 +80,7 @@ pub(super) fn gpu(name: Option<&str>) -> Result<ExitCode, CliError> {
     text::print(&text::adapters(&adapters))?;
     if !adapters.iter().any(|adapter| adapter.is_used) {
         // The error has the reason for which none is used.
-        render::Gpu::headless_on(name).map_err(app::AppError::from)?;
+        render::Gpu::headless(name).map_err(app::AppError::from)?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -79,15 +79,10 @@ pub(crate) struct AdapterSearch<I, S> {
     pub surface: S,
 }
 
-/// Failures of the search, a line per adapter.
-#[derive(Default)]
-struct Failures(String);
-
-impl Failures {
-    fn add(&mut self, adapter: impl fmt::Display, reason: &str) {
-        let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
-        self.0 += &format!("\n  {adapter}: {reason}");
-    }
+/// Adds the failure of an adapter to the text of a search, in a line.
+fn add_failure(failures: &mut String, adapter: impl fmt::Display, reason: &str) {
+    let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
+    *failures += &format!("\n  {adapter}: {reason}");
 }
 
 impl<I, S> AdapterSearch<I, S>
@@ -102,18 +97,18 @@ where
         &self,
         mut open: impl AsyncFnMut(Candidate) -> Result<T, String>,
     ) -> Result<T, RenderError> {
-        let mut failures = Failures::default();
+        let mut failures = String::new();
         let mut software = Vec::new();
         let groups = backends().await;
         if groups.is_empty() {
-            failures.add(BACKEND, "expected vulkan, metal, dx12 or gl, if the system has it");
+            add_failure(&mut failures, BACKEND, "expected vulkan, metal, dx12 or gl, if the system has it");
         }
         for backends in groups {
             let found = self.find(backends).await;
             if found.is_empty() {
                 // The names are those in `WGPU_BACKEND`.
                 let names: Vec<_> = backends.iter_names().map(|(name, _)| name.to_lowercase()).collect();
-                failures.add(names.join(", "), "no adapter found");
+                add_failure(&mut failures, names.join(", "), "no adapter found");
             }
             let (slow, fast): (Vec<_>, Vec<_>) = found.into_iter().partition(Candidate::is_software);
             software.extend(slow);
@@ -122,7 +117,7 @@ where
             }
         }
         let opened = self.first_of(software, &mut open, &mut failures).await;
-        opened.ok_or(RenderError::NoAdapter { tried: failures.0 })
+        opened.ok_or(RenderError::NoAdapter { tried: failures })
     }
 
     /// Returns the result of `open` for the first of these adapters for which it does not fail.
@@ -130,7 +125,7 @@ where
         &self,
         candidates: Vec<Candidate>,
         open: &mut impl AsyncFnMut(Candidate) -> Result<T, String>,
-        failures: &mut Failures,
+        failures: &mut String,
     ) -> Option<T> {
         for mut candidate in candidates {
             let wgpu::AdapterInfo { name, backend, .. } = candidate.adapter.get_info();
@@ -140,7 +135,7 @@ where
             };
             match opened {
                 Ok(opened) => return Some(opened),
-                Err(reason) => failures.add(format_args!("{name}, {backend}"), &reason),
+                Err(reason) => add_failure(failures, format_args!("{name}, {backend}"), &reason),
             }
         }
         None
@@ -344,7 +339,7 @@ mod tests {
     fn an_adapter_that_fails_at_any_stage_is_skipped() {
         for (fault, stage) in [(Fault::Device, "no device"), (Fault::Pipeline, "no pipeline")] {
             let search = offscreen(None);
-            let mut failures = Failures::default();
+            let mut failures = String::new();
             let mut opened = Vec::new();
             let gpu = pollster::block_on(async {
                 // A machine may have a single adapter, which then is found twice.
@@ -361,7 +356,6 @@ mod tests {
                 };
                 search.first_of(found, &mut open, &mut failures).await
             });
-            let failures = failures.0;
             assert_eq!(opened.len(), 2, "{fault:?}: {failures}");
             assert_eq!(gpu.map(|gpu| gpu.adapter.get_info()).as_ref(), Some(&opened[1]), "{fault:?}");
             assert!(failures.starts_with(&line(&opened[0], stage)), "{fault:?}: {failures}");
@@ -396,10 +390,10 @@ mod tests {
         let part = last.name[..last.name.len() / 2].to_uppercase();
         let chosen = adapters(Some(&part)).into_iter().find(|report| report.is_used).unwrap();
         assert!(chosen.name.to_uppercase().contains(&part), "{chosen:?}");
-        assert_eq!(Gpu::headless_on(Some(&part)).unwrap().adapter.get_info().name, chosen.name);
+        assert_eq!(Gpu::headless(Some(&part)).unwrap().adapter.get_info().name, chosen.name);
         let none = "no such adapter";
         assert!(adapters(Some(none)).iter().all(|report| !report.is_used));
-        let text = Gpu::headless_on(Some(none)).unwrap_err().to_string();
+        let text = Gpu::headless(Some(none)).unwrap_err().to_string();
         assert!(text.contains("its name does not contain \"no such adapter\""), "{text}");
     }
 }

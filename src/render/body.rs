@@ -189,31 +189,10 @@ impl ViewUniform {
     }
 }
 
-/// Uniform buffer of a view, and its bind group.
-#[derive(Debug)]
-struct ViewBinding {
-    uniform: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
-}
-
-impl ViewBinding {
-    fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, map: &wgpu::Buffer) -> Self {
-        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("view"),
-            size: size_of::<ViewUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: map.as_entire_binding() },
-            ],
-        });
-        Self { uniform, bind_group }
-    }
+/// Creates a buffer of this size, bytes, which is written from the processor.
+fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let usage = usage | wgpu::BufferUsages::COPY_DST;
+    gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }
 
 /// Renderer of bodies for targets of one format.
@@ -226,8 +205,8 @@ pub struct BodyRenderer {
     map: wgpu::Buffer,
     /// Colour map in the buffer `map`.
     uploaded_map: Option<ColorMap>,
-    /// Uniforms, one per view; created on first use.
-    bindings: Vec<ViewBinding>,
+    /// Uniform buffers with their bind groups, one per view; created on first use.
+    bindings: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
     vertices: wgpu::Buffer,
     scratch: Vec<Vertex>,
     /// Inputs of the vertices in the vertex buffer.
@@ -247,12 +226,8 @@ impl BodyRenderer {
             label: Some("body"),
             source: wgpu::ShaderSource::Wgsl(include_str!("../../shaders/mesh.wgsl").into()),
         });
-        let map = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("colour map"),
-            size: size_of::<[[f32; 4]; MAP_COLORS]>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let size = size_of::<[[f32; 4]; MAP_COLORS]>() as u64;
+        let map = buffer(gpu, "colour map", size, wgpu::BufferUsages::UNIFORM);
         let uniform = |binding, visibility| wgpu::BindGroupLayoutEntry {
             binding,
             visibility,
@@ -309,7 +284,7 @@ impl BodyRenderer {
             map,
             uploaded_map: None,
             bindings: Vec::new(),
-            vertices: Self::vertex_buffer(gpu, 1024),
+            vertices: buffer(gpu, "body", 1024, wgpu::BufferUsages::VERTEX),
             scratch: Vec::new(),
             uploaded: Vec::new(),
             format,
@@ -322,15 +297,6 @@ impl BodyRenderer {
         let several = Some(gpu.samples()).filter(|&samples| samples > 1)?;
         let texture = gpu.target("body, multisampled", format, size, several, wgpu::TextureUsages::empty());
         Some(texture.create_view(&wgpu::TextureViewDescriptor::default()))
-    }
-
-    fn vertex_buffer(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("body"),
-            size: bytes,
-            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
     }
 
     /// Draws views, which must not overlap and must have the same colour map, into a target of this size, pixels, and
@@ -379,12 +345,12 @@ impl BodyRenderer {
         });
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         let mut first = 0;
-        for ((view, uploaded), binding) in views.iter().zip(&self.uploaded).zip(&self.bindings) {
+        for ((view, uploaded), (_, bind_group)) in views.iter().zip(&self.uploaded).zip(&self.bindings) {
             let Viewport { corner: [x, y], size: [width, height] } = view.viewport;
             let [triangles, lines, end] = uploaded.parts;
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, &binding.bind_group, &[]);
+            pass.set_bind_group(0, bind_group, &[]);
             for (pipeline, vertices) in
                 [(&self.backgrounds, first..triangles), (&self.triangles, triangles..lines), (&self.lines, lines..end)]
             {
@@ -425,13 +391,23 @@ impl BodyRenderer {
             let clip_per_metre = viewport.size.map(|side| (2.0 * pixels_per_metre / f64::from(side)) as f32);
             let uniform = ViewUniform::new(frame, clip_per_metre);
             if self.bindings.len() == i {
-                self.bindings.push(ViewBinding::new(gpu, &self.layout, &self.map));
+                let own = buffer(gpu, "view", size_of::<ViewUniform>() as u64, wgpu::BufferUsages::UNIFORM);
+                let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("view"),
+                    layout: &self.layout,
+                    entries: &[
+                        wgpu::BindGroupEntry { binding: 0, resource: own.as_entire_binding() },
+                        wgpu::BindGroupEntry { binding: 1, resource: self.map.as_entire_binding() },
+                    ],
+                });
+                self.bindings.push((own, bind_group));
             }
-            gpu.queue.write_buffer(&self.bindings[i].uniform, 0, bytemuck::bytes_of(&uniform));
+            gpu.queue.write_buffer(&self.bindings[i].0, 0, bytemuck::bytes_of(&uniform));
         }
         let bytes: &[u8] = bytemuck::cast_slice(&self.scratch);
         if self.vertices.size() < bytes.len() as u64 {
-            self.vertices = Self::vertex_buffer(gpu, (bytes.len() as u64).next_power_of_two());
+            let size = (bytes.len() as u64).next_power_of_two();
+            self.vertices = buffer(gpu, "body", size, wgpu::BufferUsages::VERTEX);
         }
         gpu.queue.write_buffer(&self.vertices, 0, bytes);
     }
@@ -512,7 +488,7 @@ mod tests {
     /// An upload is reused only if nothing visible has changed.
     #[test]
     fn a_used_renderer_draws_what_a_new_one_does() {
-        let gpu = Gpu::headless().unwrap();
+        let gpu = Gpu::headless(None).unwrap();
         let mut used = BodyRenderer::new(&gpu, FORMAT);
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
         let sheared = square.map(|x| Vector2::new(x.x + 0.5 * x.y, x.y));
@@ -567,7 +543,7 @@ mod tests {
     /// The shader computes the value at every pixel as [`Field::of_components`] does.
     #[test]
     fn pixels_have_the_colour_of_their_value() {
-        let gpu = Gpu::headless().unwrap();
+        let gpu = Gpu::headless(None).unwrap();
         let mut renderer = BodyRenderer::new(&gpu, FORMAT);
         let corners = [[0.0, 0.0], [120.0, 0.0], [0.0, 80.0]].map(Vector2::from);
         let viewport = Viewport { corner: [0, 0], size: [120, 80] };

@@ -99,15 +99,9 @@ impl Gpu {
         Self { adapter, device, queue, failure }
     }
 
-    /// Creates a device without a window, on the best adapter that draws. Not for web pages, which cannot wait for a
-    /// device.
-    pub fn headless() -> Result<Self, RenderError> {
-        Self::headless_on(None)
-    }
-
     /// Creates a device without a window, on the best adapter that draws and whose name contains `name`; `None` stands
     /// for `WGPU_ADAPTER_NAME`. Not for web pages, which cannot wait for a device.
-    pub fn headless_on(name: Option<&str>) -> Result<Self, RenderError> {
+    pub fn headless(name: Option<&str>) -> Result<Self, RenderError> {
         let search = adapter::offscreen(name);
         pollster::block_on(search.first_usable(async |candidate| Self::usable(candidate.adapter).await))
     }

@@ -49,7 +49,7 @@ fn project(camera: &Camera, rect: egui::Rect, p: Vector2<f64>) -> [f64; 2] {
 
 /// The drawn body ends where the solver's nodes end, and every triangle has the colour of its value.
 fn the_body_is_drawn_where_the_solver_says(id: &'static str) {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let mut lab = lab(id);
     let view = &mut lab.desk.view;
     (view.layout.bars, view.lines.rest_outline, view.lines.ghost, view.lines.exact) = (false, false, false, false);

@@ -179,7 +179,7 @@ fn a_diverging_pane_does_not_set_the_range_of_colours() {
 
 /// Asserts that the body of every pane is drawn with this multiple of its displacement.
 fn bodies_are_drawn(ui: &mut Ui, magnification: f64) {
-    let Ok(gpu) = Gpu::headless() else { return };
+    let Ok(gpu) = Gpu::headless(None) else { return };
     let drawn = picture(&gpu, ui.state_mut(), [1280, 800], 1.0, egui::Theme::Dark).unwrap();
     let lab = ui.state();
     let background = lab.frame().background;

@@ -39,7 +39,7 @@ const CHINESE: (Language, Theme, &str) = (Language::Chinese, Theme::Dark, "dark-
 /// Draws the window with these languages and themes, and compares it with the golden pictures of this name, except for
 /// the rectangles of measured numbers.
 fn golden(name: &str, lab: &mut Lab, looks: &[(Language, Theme, &str)], measured: &[[u32; 4]]) {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let mut wrong = Vec::new();
     for (language, theme, mark) in looks {

@@ -18,7 +18,7 @@ fn the_golden_comparison_sees_a_changed_load() {
 /// The body fills most of the picture to the left of the panel; without panel and bars it fills the whole picture.
 #[test]
 fn the_panel_can_be_left_out() {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let mut lab = lab("article");
     lab.solve();
     let with = picture(&gpu, &mut lab, [1280, 800], 1.0, egui::Theme::Dark).unwrap();
@@ -36,7 +36,7 @@ fn the_panel_can_be_left_out() {
 /// With two pixels per point, the picture is the same at twice the size.
 #[test]
 fn high_density_shows_the_same_picture_sharper() {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let mut lab = lab("shear");
     lab.desk.view.layout.bars = false;
     lab.solve();
@@ -58,7 +58,7 @@ fn high_density_shows_the_same_picture_sharper() {
 /// Loads of any size give a picture, in views of any size.
 #[test]
 fn pictures_of_extremes_and_of_tiny_views() {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let mut lab = lab("cantilever");
     for force in [0.0, 1e-9, 9e3, 1e9, 1e15] {
         let mut scene = scene("cantilever");
@@ -98,7 +98,7 @@ fn a_shot_without_its_study_fails() {
 /// The last equilibrium is drawn under the name and in the colour of its own method, not of the one that diverges.
 #[test]
 fn the_last_equilibrium_keeps_the_name_of_its_method() {
-    let gpu = Gpu::headless().unwrap();
+    let gpu = Gpu::headless(None).unwrap();
     let mut lab = lab("article");
     let scene_of = |method: &str, force: f64| {
         scene_with("article", &[&format!("solver.method=\"{method}\""), &format!("load.0.force=[0,{force}]")])

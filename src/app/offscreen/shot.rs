@@ -34,7 +34,7 @@ pub fn shot(
     output: &Path,
     observe: Observer<'_>,
 ) -> Result<Shot, AppError> {
-    let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
+    let gpu = Gpu::headless(options.look.adapter.adapter.as_deref())?;
     let mut lab = Lab::new(source, scene, simulation);
     lab.settings.language = options.look.language;
     let view = &mut lab.desk.view;

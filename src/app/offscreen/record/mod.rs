@@ -143,7 +143,7 @@ pub fn record(
     let failed = |error| RecordError::Simulation { scene: source.name.display().to_string(), error };
     let simulation = Simulation::new(&scene).map_err(failed)?;
     let again = || Simulation::with_system(&scene, simulation.system().clone()).map_err(failed);
-    let gpu = Gpu::headless_on(options.look.adapter.adapter.as_deref())?;
+    let gpu = Gpu::headless(options.look.adapter.adapter.as_deref())?;
     let mut canvas = Canvas::new(&gpu, options.size, 1.0, options.look.theme.into())?;
 
     let rate = match moves {
