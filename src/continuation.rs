@@ -284,9 +284,9 @@ impl<S: Clone> Continuation<S> {
                 return Err(PathFailure::Limit);
             }
             let from = self.point.clone();
-            let corrected = self.correct(equations, &from, step).or_else(|| {
+            let corrected = self.correct(equations, &from, step, None).or_else(|| {
                 self.stress_lags ^= self.may_lag;
-                self.may_lag.then(|| self.correct(equations, &from, step))?
+                self.may_lag.then(|| self.correct(equations, &from, step, None))?
             });
             let Some((point, contraction, cosine)) = corrected else {
                 step *= 0.5;
@@ -439,7 +439,7 @@ impl<S: Clone> Continuation<S> {
         part: f64,
     ) -> Option<(f64, ContinuationPoint<S>)> {
         let steps = [part, 0.5 * part, 0.5 * (1.0 + part)].map(|part| low + (high - low) * part);
-        steps.into_iter().find_map(|step| Some((step, self.correct(equations, from, step)?.0)))
+        steps.into_iter().find_map(|step| Some((step, self.correct(equations, from, step, None)?.0)))
     }
 
     /// Returns the limit point within the last step, of this length.
@@ -453,7 +453,7 @@ impl<S: Clone> Continuation<S> {
             // Between secant and bisection, so that both ends move.
             let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
             let middle = 0.8 * secant + 0.1 * (low.0 + high.0);
-            let Some((point, ..)) = self.correct(equations, &from, middle) else { break };
+            let Some((point, ..)) = self.correct(equations, &from, middle, None) else { break };
             let slope = point.slope;
             if slope.abs() < best.slope.abs() {
                 best = point;
@@ -485,7 +485,8 @@ impl<S: Clone> Continuation<S> {
         if (goal - from.factor) * (goal - to.factor) > 0.0 {
             return None;
         }
-        let modes = [from.modes.min(to.modes), from.modes.max(to.modes)];
+        let modes = from.modes.min(to.modes)..=from.modes.max(to.modes);
+        let is_between = |point: &ContinuationPoint<S>| modes.contains(&point.modes);
         // From the nearer end: where λ is nearly constant, a step at fixed λ is long.
         let is_forward = way(from).abs() <= way(to).abs();
         let mut near = if is_forward { from.clone() } else { to.clone() };
@@ -493,17 +494,15 @@ impl<S: Clone> Continuation<S> {
         let mut last = near.clone();
         let mut length = (0.5 * way(&near)).clamp(-MAX_STEP, MAX_STEP);
         for _ in 0..MAX_TRIALS {
-            if let Some(found) = self.correct_at(equations, &near, goal, modes) {
+            let found = self.correct(equations, &near, way(&near), Some(goal)).map(|(point, ..)| point);
+            if let Some(found) = found.filter(|p| is_between(p) && (p.slope < 0.0) == (near.slope < 0.0)) {
                 return Some(found);
             }
             if self.linearizations >= self.max_linearizations {
                 break;
             }
-            match self
-                .correct(equations, &last, length)
-                .filter(|(point, ..)| (modes[0]..=modes[1]).contains(&point.modes))
-            {
-                Some((point, ..)) => {
+            match self.correct(equations, &last, length, None).map(|(point, ..)| point).filter(is_between) {
+                Some(point) => {
                     let is_before = (goal - point.factor) * (goal - last.factor) > 0.0;
                     if is_before {
                         let longest = (2.0 * length.abs()).min(MAX_STEP);
@@ -529,55 +528,21 @@ impl<S: Clone> Continuation<S> {
         })
     }
 
-    /// Corrects at fixed λ from a nearby point of the path.
-    fn correct_at(
-        &mut self,
-        equations: &mut impl PathEquations<Configuration = S>,
-        near: &ContinuationPoint<S>,
-        goal: f64,
-        [fewest, most]: [usize; 2],
-    ) -> Option<ContinuationPoint<S>> {
-        let mut state = near.state.clone();
-        let distance = (goal - near.factor) / near.slope;
-        equations.advance(&mut state, &near.tangent, distance, [near.factor, goal]);
-        let mut last: Option<f64> = None;
-        let mut stressed = self.stress_lags.then(|| near.state.clone());
-        for _ in 0..MAX_CORRECTIONS {
-            self.count()?;
-            let [correction, rate] = &mut self.scratch;
-            let modes = equations.linearize(&mut state, goal, stressed.as_ref(), correction, rate)?;
-            let size = (self.weight * dot(correction, correction)).sqrt();
-            let first = (MAX_FIRST_CORRECTION * distance.abs()).max(RESIDUE);
-            let allowed = last.map_or(first, |last| MAX_CONTRACTION * last);
-            if size.is_nan() || size > allowed.max(ROUNDING) {
-                return None;
-            }
-            equations.advance(&mut state, correction, 1.0, [goal; 2]);
-            stressed = stressed.map(|_| state.clone());
-            last = Some(size);
-            if size <= (CONVERGED * distance.abs()).max(1e-4 * RESIDUE) {
-                equations.complete(&mut state);
-                let (point, cosine) = self.tangent_at(near, state, goal, modes)?;
-                let consistent = (fewest..=most).contains(&modes) && (point.slope < 0.0) == (near.slope < 0.0);
-                return (consistent && cosine >= MIN_COSINE).then_some(point);
-            }
-        }
-        None
-    }
-
-    /// Predicts by a step along the tangent and corrects in the plane normal to it. Returns the point, the largest
-    /// contraction, and the cosine of the angle between the tangents.
+    /// Predicts by a step along the tangent and corrects in the plane normal to it, or at fixed λ = `goal`. Returns the
+    /// point, the largest contraction, and the cosine of the angle between the tangents.
     fn correct(
         &mut self,
         equations: &mut impl PathEquations<Configuration = S>,
         from: &ContinuationPoint<S>,
         step: f64,
+        goal: Option<f64>,
     ) -> Option<(ContinuationPoint<S>, f64, f64)> {
         let mut state = from.state.clone();
         // Load factors of the prediction, and of the state.
-        let (mut factor, mut at) = (from.factor + step * from.slope, from.factor);
+        let (mut factor, mut at) = (goal.unwrap_or(from.factor + step * from.slope), from.factor);
         // Higher orders of the prediction keep slender bodies from a spurious stretch, under which they are stiff.
-        for (by, part) in from.derivatives.iter().zip([0.5 * step * step, step.powi(3) / 6.0]) {
+        let orders = [0.5 * step * step, step.powi(3) / 6.0];
+        for (by, part) in from.derivatives.iter().zip(orders).filter(|_| goal.is_none()) {
             let (by_factor, by_x) = by.split_last()?;
             let size = (self.weight * dot(by_x, by_x) + by_factor * by_factor).sqrt();
             if part.abs() * size > MAX_TURN * step.abs() {
@@ -588,6 +553,8 @@ impl<S: Clone> Continuation<S> {
             at = factor;
         }
         equations.advance(&mut state, &from.tangent, step, [at, factor]);
+        let first = (MAX_FIRST_CORRECTION * step.abs()).max(if goal.is_some() { RESIDUE } else { 0.0 });
+        let converged = (CONVERGED * step.abs()).max(if goal.is_some() { 1e-4 * RESIDUE } else { 0.0 });
         let (mut last, mut contraction): (Option<f64>, f64) = (None, 1e-3);
         // Before the first correction the start of the step, then the state whose rotations the correction has not changed yet.
         let mut stressed = self.stress_lags.then(|| from.state.clone());
@@ -596,13 +563,13 @@ impl<S: Clone> Continuation<S> {
             let [correction, rate] = &mut self.scratch;
             let modes = equations.linearize(&mut state, factor, stressed.as_ref(), correction, rate)?;
             let [along, across] = [&*correction, &*rate].map(|v| self.weight * dot(&from.tangent, v));
-            let by = -along / (across + from.slope);
+            let by = if goal.is_some() { 0.0 } else { -along / (across + from.slope) };
             correction.iter_mut().zip(&*rate).for_each(|(c, r)| *c += by * r);
             let size = (self.weight * dot(correction, correction) + by * by).sqrt();
             if let Some(last) = last.filter(|last| *last > ROUNDING) {
                 contraction = contraction.max(size / last);
             }
-            let allowed = last.map_or(MAX_FIRST_CORRECTION * step.abs(), |last| MAX_CONTRACTION * last);
+            let allowed = last.map_or(first, |last| MAX_CONTRACTION * last);
             if size.is_nan() || size > allowed.max(ROUNDING) {
                 return None;
             }
@@ -611,32 +578,17 @@ impl<S: Clone> Continuation<S> {
             factor += by;
             // The prediction stretches a slender body, and a stretched body has another tangent: one small correction does
             // not prove convergence.
-            let is_corrected = last.is_some();
-            last = Some(size);
-            if size <= ROUNDING || is_corrected && size <= CONVERGED * step.abs() {
+            let is_corrected = last.replace(size).is_some() || goal.is_some();
+            if size <= ROUNDING || is_corrected && size <= converged {
                 equations.complete(&mut state);
-                let (point, cosine) = self.tangent_at(from, state, factor, modes)?;
-                return (cosine >= MIN_COSINE).then_some((point, contraction, cosine));
+                let length = (self.weight * dot(rate, rate) + 1.0).sqrt();
+                let cosine = (self.weight * dot(&from.tangent, rate) + from.slope) / length;
+                let slope = cosine.signum() / length;
+                let tangent = rate.iter().map(|v| v * slope).collect();
+                let point = ContinuationPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
+                return (cosine.abs() >= MIN_COSINE).then_some((point, contraction, cosine.abs()));
             }
         }
         None
-    }
-
-    /// Returns the point with the unit tangent of the last linearization, and the cosine of its angle with that of
-    /// `from`.
-    fn tangent_at(
-        &self,
-        from: &ContinuationPoint<S>,
-        state: S,
-        factor: f64,
-        modes: usize,
-    ) -> Option<(ContinuationPoint<S>, f64)> {
-        let rate = &self.scratch[1];
-        let length = (self.weight * dot(rate, rate) + 1.0).sqrt();
-        let cosine = (self.weight * dot(&from.tangent, rate) + from.slope) / length;
-        let slope = cosine.signum() / length;
-        let tangent = rate.iter().map(|v| v * slope).collect();
-        let point = ContinuationPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
-        length.is_finite().then_some((point, cosine.abs()))
     }
 }
