@@ -102,7 +102,7 @@ fn observed_ratio(equilibrium: &Simulation, rho: f64) -> Option<f64> {
     let mut warped = Simulation::with_system(&scene, equilibrium.system().clone()).ok()?;
     // A disturbance that is small in all iterations, and larger than rounding errors.
     let small = height * if rho > 1.0 { 1e-7 } else { 1e-3 };
-    let (lowest, highest) = (1e-7 * height, 1e-3 * height);
+    let (lowest, highest) = (1e-6 * height, 1e-3 * height);
     let mask = &equilibrium.system().pattern().mask;
     let disturbed = at_rest.iter().zip(mask).enumerate().map(|(i, (u, mask))| {
         let push = |k: f64| ((i as f64 + k) * 0.754_877_666).fract() - 0.5;
