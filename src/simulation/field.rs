@@ -138,30 +138,22 @@ impl Field {
     #[doc(hidden)]
     pub fn values(self, problem: &Problem, state: &State, kinematics: Kinematics, values: &mut Vec<Option<f64>>) {
         values.clear();
+        let (mesh, elements) = (problem.system().mesh(), problem.system().elements());
         if self.is_of_elements() {
             let error = ErrorEstimate::of(problem, state, &NodalStress::of(problem, state, kinematics));
-            let points = problem.system().elements().points_per_element();
-            let own = error.elements.iter().flat_map(|&v| std::iter::repeat_n(v.is_finite().then_some(v), points));
-            values.extend(own);
-            // The mesh is too coarse for an estimate.
-            values.resize(problem.system().elements().point_count(), None);
-            return;
-        }
-        if self.is_of_displacement() {
-            let mesh = problem.system().mesh();
+            let of_points = |&v: &f64| std::iter::repeat_n(v.is_finite().then_some(v), elements.points_per_element());
+            values.extend(error.elements.iter().flat_map(of_points));
+        } else if self.is_of_displacement() && self != Self::ReferenceDistance {
             let points = (0..mesh.element_count()).flat_map(|element| {
                 mesh.entry().points.iter().map(move |point| MaterialPoint { element, at: point.at })
             });
-            if self == Self::ReferenceDistance {
-                values.extend(points.map(|_| None));
-                return;
-            }
             let at = |(node, weight): &(u32, f64)| state.displacement.get(*node as usize).map(|u| u * *weight);
             values.extend(points.map(|point| self.of_vector(mesh.weights(point)?.iter().map(at).sum::<Option<_>>()?)));
-            return;
+        } else if !self.is_of_displacement() {
+            visit_points(problem, state, &mut |_, local| values.push(self.of(&local, problem.material(), kinematics)));
         }
-        let material = problem.material();
-        visit_points(problem, state, &mut |_, local| values.push(self.of(&local, material, kinematics)));
+        // The reference is not known here, and a mesh may be too coarse for an estimate of its error.
+        values.resize(elements.point_count(), None);
     }
 
     /// Returns the value for a displacement, m, or for its distance from that of the reference; `None` for other fields.

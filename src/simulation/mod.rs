@@ -110,8 +110,8 @@ impl Body {
     /// Returns `true` if a solve may start from the current state.
     fn is_useful_start(&self, same_unknowns: bool) -> bool {
         let system = self.problem.system();
-        let holds = || same_unknowns || system.pattern().are_fixed_at_rest(&self.state.displacement);
-        is_useful_start(system, &self.state) && holds()
+        is_useful_start(system, &self.state)
+            && (same_unknowns || system.pattern().are_fixed_at_rest(&self.state.displacement))
     }
 }
 
@@ -398,9 +398,7 @@ impl Simulation {
 
     /// Steps until the status is final: to the equilibrium, or to the end of the scene's duration.
     pub fn solve(&mut self) -> &Status {
-        while self.body.status == Status::Running {
-            self.step();
-        }
+        let _ = self.solve_watched(&mut |_| ControlFlow::Continue(()));
         &self.body.status
     }
 

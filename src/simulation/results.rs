@@ -1,5 +1,7 @@
 //! Result types of a state.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Matrix2, Vector2};
 
 use super::field::largest_principal;
@@ -70,23 +72,18 @@ impl Deformation {
         let elements = problem.system().elements();
         let strains = nodal.nodes().iter().map(|local| largest_principal(&local.strain));
         let rotations = nodal.nodes().iter().map(|local| local.rotation.angle().abs());
-        let mut result = Self {
-            max_strain: strains.fold(0.0, f64::max),
-            max_rotation_deg: rotations.fold(0.0, f64::max).to_degrees(),
-            area_change: area_change(problem, state),
-            ..Self::default()
-        };
-        let mut last_inverted = None;
-        let lame = problem.material().lame();
+        let (lame, mut inverted) = (problem.material().lame(), BTreeSet::new());
         elements.visit_strains(lame, &state.displacement, &state.rotations, &mut |q, h, _| {
-            let f = Matrix2::identity() + h;
-            let element = q / elements.points_per_element();
-            if f.determinant() <= 0.0 && last_inverted != Some(element) {
-                last_inverted = Some(element);
-                result.inverted_elements += 1;
+            if (Matrix2::identity() + h).determinant() <= 0.0 {
+                inverted.insert(q / elements.points_per_element());
             }
         });
-        result
+        Self {
+            max_strain: strains.fold(0.0, f64::max),
+            max_rotation_deg: rotations.fold(0.0, f64::max).to_degrees(),
+            inverted_elements: inverted.len(),
+            area_change: area_change(problem, state),
+        }
     }
 }
 

@@ -107,12 +107,10 @@ impl Search {
             self.method = (body.scene.solver.method.entry().start)();
         }
         self.method.restart(why);
-        if keeps_state {
-            self.restart(body, why);
-        } else {
+        if !keeps_state {
             body.state.reset();
-            self.restart(body, Restart::AtRest);
         }
+        self.restart(body, if keeps_state { why } else { Restart::AtRest });
         Ok(())
     }
 
@@ -122,9 +120,7 @@ impl Search {
         (body.status, body.timings, body.last_iteration) = Default::default();
         let Some(mut workspace) = self.take_workspace(body) else { return };
         let (criteria, mut untimed) = (criteria(&body.scene.solver, 0), Timings::default());
-        if why == Restart::AtRest {
-            self.method.restart(why);
-        }
+        self.method.restart(why);
         let mut it = iteration(body, &mut self.forces, &mut workspace, &mut untimed);
         let wanted = self.method.linearization();
         match why {
@@ -148,7 +144,6 @@ impl Search {
         let why = if moved_only { Restart::NewLoads } else { Restart::NewStiffness };
         // The tangent contains the mouse spring.
         self.discard_tangent();
-        self.method.restart(why);
         self.restart(body, why);
     }
 
@@ -232,11 +227,8 @@ impl Search {
 
     /// Implements [`super::Simulation::certify`].
     pub fn certify(&mut self, body: &mut Body) -> Certificate {
-        if let Some(certificate) = self.certificate {
-            return certificate;
-        }
-        if !self.can_be_certified(body) {
-            return Certificate::default();
+        if self.certificate.is_some() || !self.can_be_certified(body) {
+            return self.certificate.unwrap_or_default();
         }
         let Body { problem, state, timings, .. } = body;
         let made = self.workspace.take().map_or_else(|| Workspace::new(problem.system()), Ok);
