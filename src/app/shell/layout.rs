@@ -245,13 +245,12 @@ impl Lab {
         viewport.fit_camera(ui, &content);
         let painter = ui.painter_at(rect);
         let session = &self.desk.session;
-        let errors = diagnosis::errors(session);
         // Without bars, the note has the status of a motion that has stopped.
         let stopped =
             || Some(diagnosis::status_text(session)).filter(|(_, is_bad)| *is_bad && !self.desk.view.layout.bars);
         let label = diagnosis::state_text(session).or_else(|| Some(stopped()?.0));
         let visuals = ui.visuals();
-        self.desk.viewport.paint(&painter, visuals, &self.content(), errors, label.as_deref());
+        self.desk.viewport.paint(&painter, visuals, &self.content(), label.as_deref());
         if let Some(label) = label {
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }

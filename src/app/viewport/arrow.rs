@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::app::interface::*;
-use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
+use crate::app::viewport::projection::DrawnBody;
 use crate::format::rounded;
 
 /// Smallest length that is drawn, points: long enough to be grabbed.
@@ -124,61 +123,22 @@ impl LoadRanges {
     }
 }
 
-/// Returns the point of application of a load or a support: the middle of its edge, its node, or its point of the body;
-/// `None` if the edge does not exist.
-pub(crate) fn point_of_application(
-    mesh: &Mesh,
-    positions: &[Vector2<f64>],
-    place: &Place,
-    at_point: bool,
-) -> Option<Vector2<f64>> {
-    if let (Place::At(at), true) = (place, at_point)
-        && let Some(point) = mesh.locate((*at).into())
-    {
-        return probe::place(mesh, positions, point);
-    }
-    let nodes = match place {
-        Place::Edge(name) => mesh.edge_nodes(name)?,
-        Place::At(at) => vec![mesh.nearest_node((*at).into())],
-    };
-    let sum = nodes.iter().map(|&n| positions.get(n as usize)).sum::<Option<Vector2<f64>>>()?;
-    (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
-}
-
-/// Scene and state whose load arrows are drawn.
-#[derive(Clone, Copy)]
-pub(crate) struct LoadedBody<'a> {
-    pub scene: &'a Scene,
-    pub system: &'a System,
-    /// Positions of the nodes, m.
-    pub positions: &'a [Vector2<f64>],
-    /// Simulated time, s.
-    pub time: f64,
-    /// Direction of the arrow of a zero force, degrees.
-    pub direction: f64,
-    /// Loads that the scene opens with.
-    pub opening: OpeningLoads,
-}
-
-impl LoadedBody<'_> {
+impl DrawnBody<'_> {
     /// Returns the arrows of all forces and moments that act at the current time; the tips of forces are in the view if
     /// their bases are.
-    pub(crate) fn arrows(&self, projection: &Projection) -> Vec<LoadArrow> {
-        shortened(self.whole_arrows(projection), |from, direction| room(projection.rect, LABEL, from, direction))
+    pub(crate) fn arrows(&self) -> Vec<LoadArrow> {
+        shortened(self.whole_arrows(), |from, direction| room(self.projection.rect, LABEL, from, direction))
     }
 
     /// Returns the arrows of all forces and moments that act at the current time, each long enough to be dragged, also out
     /// of the view.
-    pub(crate) fn whole_arrows(&self, projection: &Projection) -> Vec<LoadArrow> {
+    pub(crate) fn whole_arrows(&self) -> Vec<LoadArrow> {
         let ranges = LoadRanges::new(self.opening, &self.scene.material, self.system);
-        let ([usual, largest], view) = (ranges.force, projection.rect);
+        let ([usual, largest], view) = (ranges.force, self.projection.rect);
         let scale_of_forces = scale(usual, view.size());
         let shown = self.scene.loads.iter().enumerate().filter(|(_, load)| is_seen(load, self.time));
         let arrows = shown.filter_map(|(load, of)| {
-            let at = |place: &Place, at_point| {
-                let point = point_of_application(self.system.mesh(), self.positions, place, at_point)?;
-                Some(projection.point(point))
-            };
+            let at = |place: &Place, at_point| Some(self.projection.point(self.applied(place, at_point)?));
             let arrow = match of {
                 Load::Force { place, at_point, force, .. } => {
                     let (value, degrees) = polar_form(*force);

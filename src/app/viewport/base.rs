@@ -2,15 +2,14 @@
 //! moves them along the body.
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::{nearest, point_of_application};
 use crate::app::viewport::objects::{Object, ObjectChange, rounded, snapped};
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
+use crate::app::viewport::projection::DrawnBody;
 use crate::section::cut_ends;
 
 /// Distance from a base within which a press grabs it, and from a named edge or a corner within which the base moves to
 /// it, points.
-const NEAR: f32 = 9.0;
+pub(super) const NEAR: f32 = 9.0;
 /// Distance from the body within which the pointer moves a base, points.
 const REACH: f64 = 80.0;
 
@@ -39,28 +38,9 @@ pub(crate) struct PressedBase {
     pub dragged: Option<Pos2>,
 }
 
-/// Returns the base that a press at `pointer` grabs.
-pub(crate) fn near(bases: &[Base], pointer: Pos2) -> Option<&Base> {
-    nearest(bases, NEAR, |base| base.at.distance(pointer))
-}
-
-/// Drawn body with the objects of its scene.
-pub(crate) struct Bases<'a> {
-    pub scene: &'a Scene,
-    pub system: &'a System,
-    /// Drawn positions of the nodes, m.
-    pub positions: &'a [Vector2<f64>],
-    pub outline: &'a [Segment],
-    pub projection: Projection,
-}
-
-impl Bases<'_> {
-    fn mesh(&self) -> &Mesh {
-        self.system.mesh()
-    }
-
+impl DrawnBody<'_> {
     /// Returns the bases of all objects.
-    pub(crate) fn all(&self) -> Vec<Base> {
+    pub(crate) fn bases(&self) -> Vec<Base> {
         let Scene { loads, supports, probes, sections: lines, .. } = self.scene;
         let forces = (0..).zip(loads).filter_map(|(i, load)| match load {
             Load::Force { place, at_point, .. } => Some((Object::Load(i), self.applied(place, *at_point)?)),
@@ -69,11 +49,11 @@ impl Bases<'_> {
         let supports =
             (0..).zip(supports).filter_map(|(i, s)| Some((Object::Support(i), self.applied(&s.place, s.at_point)?)));
         let probes = (0..).zip(probes).filter_map(|(i, probe)| match probe.place {
-            Place::At(at) => Some((Object::Probe(i), self.drawn(at.into())?)),
+            Place::At(at) => Some((Object::Probe(i), self.place(at.into())?)),
             // A probe on an edge usually lies at the arrow of a load, so it has no base.
             Place::Edge(_) => None,
         });
-        let sections = (0..).zip(lines).filter_map(|(i, line)| Some((Object::Section(i), self.drawn(line.at)?)));
+        let sections = (0..).zip(lines).filter_map(|(i, line)| Some((Object::Section(i), self.place(line.at)?)));
         let ends = (0..).zip(lines).flat_map(|(i, line)| self.ends_of_section(i, line));
         // A probe or a section that lies on a force or a support is in front.
         let all = probes.chain(sections).chain(forces).chain(supports).chain(ends);
@@ -88,7 +68,7 @@ impl Bases<'_> {
         let far = |along: f64| f64::from(NEAR) < along.abs() * self.projection.camera.scale;
         let ends = [from + INSIDE * (to - from), to - INSIDE * (to - from)].into_iter().enumerate();
         let ends = ends.filter(|(_, along)| far(*along)).filter_map(|(end, along)| {
-            Some((Object::SectionEnd { section, end }, self.drawn(line.at + line.tangent() * along)?))
+            Some((Object::SectionEnd { section, end }, self.place(line.at + line.tangent() * along)?))
         });
         ends.collect()
     }
@@ -110,16 +90,6 @@ impl Bases<'_> {
         Some(SectionLine { angle: (angle + 0.0).to_radians(), ..line })
     }
 
-    /// Returns the drawn point of application of a force or a support, m.
-    fn applied(&self, place: &Place, at_point: bool) -> Option<Vector2<f64>> {
-        point_of_application(self.mesh(), self.positions, place, at_point)
-    }
-
-    /// Returns the drawn position of a material point, m.
-    fn drawn(&self, rest: Vector2<f64>) -> Option<Vector2<f64>> {
-        probe::place(self.mesh(), self.positions, self.mesh().locate(rest)?)
-    }
-
     /// Returns the place to which the pointer moves an object, and its drawn position, m: a named edge or a corner near
     /// the pointer, else the point of the body there; `None` far from the body.
     fn target(&self, object: Object, pointer: Pos2) -> Option<(Place, Vector2<f64>)> {
@@ -135,7 +105,7 @@ impl Bases<'_> {
             if !matches!(object.place(self.scene), Some(Place::At(_))) {
                 return Some((edge, at));
             }
-            let middle = point_of_application(mesh, mesh.nodes(), &edge, false)?;
+            let middle = DrawnBody { positions: mesh.nodes(), ..*self }.applied(&edge, false)?;
             Some((Place::At(rounded(self.system, middle).into()), at))
         });
         let at_node = |n: u32| Some((Place::At(mesh.node(n).into()), *self.positions.get(n as usize)?));
@@ -145,10 +115,10 @@ impl Bases<'_> {
             return Some(nearest);
         }
         let world = self.projection.place(pointer);
-        let point = mesh.pick(self.positions, self.outline, world, REACH / self.projection.camera.scale)?;
+        let point = mesh.pick(self.positions, &self.geometry.boundary, world, REACH / self.projection.camera.scale)?;
         let rest = probe::place(mesh, mesh.nodes(), point)?;
-        let rest = snapped(self.system, self.outline, rest, CLOSE / self.projection.camera.scale);
-        Some((Place::At(rest.into()), self.drawn(rest)?))
+        let rest = snapped(self.system, &self.geometry.boundary, rest, CLOSE / self.projection.camera.scale);
+        Some((Place::At(rest.into()), self.place(rest)?))
     }
 
     /// Returns the scene after an object has been dragged to `pointer`; `None` far from the body.
@@ -166,7 +136,7 @@ impl Bases<'_> {
 
     /// Paints a ring at the base under the pointer, and at the place to which it is dragged, with the name of that
     /// place.
-    pub(crate) fn paint(&self, painter: &Painter, hot: PressedBase, visuals: &egui::Visuals, color: Color32) {
+    pub(crate) fn paint_base(&self, painter: &Painter, hot: PressedBase, visuals: &egui::Visuals, color: Color32) {
         painter.circle_stroke(hot.base.at, NEAR, Stroke::new(1.5, color));
         let Some(pointer) = hot.dragged else { return };
         let Some((place, at)) = self.target(hot.base.object, pointer) else {
@@ -176,7 +146,7 @@ impl Bases<'_> {
         };
         let at = self.projection.point(at);
         let from = match hot.base.object {
-            Object::SectionEnd { section, .. } => self.scene.sections.get(section).and_then(|line| self.drawn(line.at)),
+            Object::SectionEnd { section, .. } => self.scene.sections.get(section).and_then(|line| self.place(line.at)),
             _ => None,
         };
         let from = from.map_or(hot.base.at, |pivot| self.projection.point(pivot));

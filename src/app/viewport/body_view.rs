@@ -1,12 +1,11 @@
 //! View of a body in a part of the window: its drawn mesh, and the pointer over it. Several views can share a camera.
 
 use crate::app::interface::*;
-use crate::app::viewport::arrow::LoadedBody;
 use crate::app::viewport::body_mesh::BodyMesh;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::pointer::Pointer;
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
+use crate::app::viewport::projection::{DrawnBody, Projection};
 use crate::render::Viewport;
 
 /// View of a body in a part of the window.
@@ -39,16 +38,17 @@ impl BodyView {
         Projection { camera: camera.shown, rect: self.rect }
     }
 
-    /// Returns the loads of a scene at a simulated time, s, on the body as of the last frame. `direction` is that of the arrow
-    /// of a zero force, degrees.
-    pub(crate) fn forces<'a>(
+    /// Returns the body as of the last frame, with the loads of a scene at a simulated time, s. `direction` is that of the
+    /// arrow of a zero force, degrees.
+    pub(crate) fn drawn_body<'a>(
         &'a self,
-        scene: &'a Scene,
-        time: f64,
+        projection: Projection,
+        (scene, time): (&'a Scene, f64),
         (session, direction): (&Session, f64),
-    ) -> Option<LoadedBody<'a>> {
-        let (system, positions) = (self.body.system.as_ref()?, &self.body.nodes);
-        Some(LoadedBody { scene, system, positions, time, direction, opening: session.document().opened })
+    ) -> Option<DrawnBody<'a>> {
+        let (system, positions, geometry) = (self.body.system.as_ref()?, &self.body.nodes, &self.body.geometry);
+        let opening = session.document().opened;
+        Some(DrawnBody { scene, system, geometry, positions, projection, time, direction, opening })
     }
 
     /// Shows the value of the displayed field and the displacement of a body at a material point, next to a position in the

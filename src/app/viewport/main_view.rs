@@ -1,21 +1,18 @@
 //! View of the body of Explore and Learn: its camera, menu, pinned point, and overlays.
 
-use crate::app::diagnosis::Errors;
 use crate::app::interface::*;
 use crate::app::session::has_mesh_of;
-use crate::app::viewport::arrow::{LoadArrow, LoadedBody};
+use crate::app::viewport::arrow::LoadArrow;
 use crate::app::viewport::bars;
-use crate::app::viewport::base::{Bases, CLOSE};
+use crate::app::viewport::base::CLOSE;
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
 use crate::app::viewport::objects;
-use crate::app::viewport::overlay::{self, MainOverlay, Overlay};
+use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe::{self, CardChoice};
-use crate::app::viewport::projection::Projection;
-use crate::section::{Section, SectionForces};
+use crate::app::viewport::projection::{DrawnBody, Projection};
 use crate::state::largest;
-use crate::study::section_chart;
 
 /// Largest margins around the body when the camera is fitted, points, and their largest part of the view: room for the
 /// load arrow, the line key above and the colour bar below.
@@ -150,7 +147,7 @@ impl MainView {
     pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let arrows = self.arrows(content);
-        let bases = self.bases(content).map_or_else(Vec::new, |bases| bases.all());
+        let bases = self.editable_body(content).map_or_else(Vec::new, |body| body.bases());
         self.view.rect = rect;
         // A magnified body is not where the pointer would pull it.
         let is_fixed = content.session.is_in_background() || self.view.body.magnification != 1.0;
@@ -229,23 +226,18 @@ impl MainView {
         self.camera.own.is_some() && self.view.body.points.iter().any(is_out)
     }
 
-    /// Returns the objects that can be moved along the body: none in Learn, and none of a large body, which is solved in
-    /// the background.
-    fn bases<'a>(&'a self, content: &Content<'a>) -> Option<Bases<'a>> {
+    /// Returns the body whose objects can be moved along it: none in Learn, and no large one, which is solved in the
+    /// background.
+    fn editable_body<'a>(&'a self, content: &Content<'a>) -> Option<DrawnBody<'a>> {
         let is_fixed = content.card.is_some() || content.session.is_in_background();
-        (!is_fixed).then(|| Bases {
-            scene: content.session.scene(),
-            system: content.simulation().system(),
-            positions: &self.view.body.nodes,
-            outline: &content.session.model.geometry.boundary,
-            projection: self.projection(),
-        })
+        let body = self.drawn_body(content).filter(|_| !is_fixed)?;
+        Some(DrawnBody { scene: content.session.scene(), ..body })
     }
 
     /// Returns the edit by a base that was dropped at another place.
     pub(crate) fn drop_base(&self, interaction: &Interaction, content: &Content<'_>) -> Option<Action> {
         let (object, at) = interaction.dropped?;
-        let moved = self.bases(content)?.moved(object, at).filter(|moved| moved != content.session.scene());
+        let moved = self.editable_body(content)?.moved(object, at).filter(|moved| moved != content.session.scene());
         moved.map(|moved| Action::Edit(objects::EDIT, Box::new(moved)))
     }
 
@@ -276,17 +268,17 @@ impl MainView {
         objects::show_menu(response, (scene, system), (self.menu?, NEAR / self.camera.shown.scale))
     }
 
-    /// Returns the loads of the last frame's arrows.
-    fn forces<'a>(&'a self, content: &Content<'a>) -> Option<LoadedBody<'a>> {
+    /// Returns the body of the last frame, with the loads of its arrows.
+    fn drawn_body<'a>(&'a self, content: &Content<'a>) -> Option<DrawnBody<'a>> {
         let simulation = content.simulation();
-        let time = simulation.state().time();
-        self.view.forces(simulation.scene(), time, (content.session, content.direction))
+        let scene = (simulation.scene(), simulation.state().time());
+        self.view.drawn_body(self.projection(), scene, (content.session, content.direction))
     }
 
     /// Returns the arrows of the loads, as of the last frame.
     pub(crate) fn arrows(&self, content: &Content<'_>) -> Vec<LoadArrow> {
-        let forces = self.forces(content).filter(|_| !content.is_apart());
-        forces.map_or_else(Vec::new, |forces| forces.arrows(&self.projection()))
+        let body = self.drawn_body(content).filter(|_| !content.is_apart());
+        body.map_or_else(Vec::new, |body| body.arrows())
     }
 
     /// Returns the window position of a material point.
@@ -393,14 +385,15 @@ impl MainView {
         if content.is_apart() || bars::is_tiny(content.options, size) {
             return least;
         }
+        let Some(own) = self.drawn_body(content) else { return least };
         let camera = Camera::fit(low, high, view, least);
         let projection = Projection { camera, rect: Rect::from_min_size(Pos2::ZERO, size) };
-        let Some(own) = self.forces(content) else { return least };
-        let mut arrows = own.whole_arrows(&projection);
+        let own = DrawnBody { projection, ..own };
+        let mut arrows = own.whole_arrows();
         if let Some(reach) = content.reach() {
             let positions: Vec<_> = self.drawn_positions(reach).collect();
-            let forces = LoadedBody { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
-            arrows.extend(forces.whole_arrows(&projection));
+            let body = DrawnBody { scene: reach.scene(), system: reach.system(), positions: &positions, ..own };
+            arrows.extend(body.whole_arrows());
         }
         let forces = arrows.iter().filter(|arrow| arrow.vector() != Vec2::ZERO);
         forces.fold(least, |margins, arrow| {
@@ -418,50 +411,23 @@ impl MainView {
     }
 
     /// Paints the overlays; `note` is a text over the body.
-    pub(crate) fn paint(
-        &self,
-        painter: &Painter,
-        visuals: &Visuals,
-        content: &Content<'_>,
-        errors: Errors,
-        note: Option<&str>,
-    ) {
-        let Some(forces) = self.forces(content) else { return };
+    pub(crate) fn paint(&self, painter: &Painter, visuals: &Visuals, content: &Content<'_>, note: Option<&str>) {
+        let Some(body) = self.drawn_body(content) else { return };
         let session = content.session;
-        let simulation = session.simulation();
-        let (shown, fallback) = (content.session.drawn(), session.fallback());
-        let moves_support = simulation.problem().supports().move_the_body();
-        let mut reactions = if moves_support { simulation.support_reactions() } else { Vec::new() };
-        for (reaction, support) in reactions.iter_mut().zip(simulation.problem().supports().all()) {
-            reaction.middle = support.middle + (reaction.middle - support.middle) * self.view.body.magnification;
-        }
-        let sections = sections(shown);
-        let (ghost, exact) = (content.ghost(), self.exact(content));
         let overlay = Overlay {
             view: &self.view,
-            projection: self.projection(),
-            body: LoadedBody { scene: shown.scene(), ..forces },
-            wanted: fallback.map(|_| simulation.scene()),
+            body: DrawnBody { scene: session.drawn().scene(), ..body },
+            wanted: session.fallback().map(|_| session.simulation().scene()),
             options: content.options,
             apart: content.is_apart(),
-            exact: &exact,
+            exact: &self.exact(content),
             note,
-            main: Some(MainOverlay {
-                ghost,
-                live: session.live().map(|live| live.is_late(shown)),
-                // The force of a paused motion would be that of the pointer's velocity alone.
-                mouse_spring: simulation.mouse_spring().filter(|_| !session.is_motion() || session.is_running()),
-                playback: &session.playback,
-                sections: &sections,
-                reactions: &reactions,
-                exact_scene: session.live().map_or(simulation.scene(), |live| &live.key),
-                errors,
-                areas: [Some(shown), ghost.and(session.linear())].map(|body| body.map(Simulation::area_change)),
-            }),
+            session: Some(session),
+            ghost: content.ghost(),
         };
         overlay::paint(painter, &overlay, visuals);
-        if let Some((hot, bases)) = self.view.pointer.hot_base().zip(self.bases(content)) {
-            bases.paint(painter, hot, visuals, Palette::new(visuals).load);
+        if let Some((hot, body)) = self.view.pointer.hot_base().zip(self.editable_body(content)) {
+            body.paint_base(painter, hot, visuals, Palette::new(visuals).load);
         }
     }
 
@@ -504,19 +470,4 @@ fn least_margins(size: [f64; 2]) -> Margins {
     let has_bar = bars::has_legend(egui::vec2(size[0] as f32, size[1] as f32));
     let bar = if has_bar { f64::from(bars::LEGEND_HEIGHT) } else { 0.0 };
     Margins { sides: sides.min(width), top: top.min(height), bottom: bottom.min(height.max(bar)) }
-}
-
-/// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
-fn sections(simulation: &Simulation) -> Vec<(Section, String)> {
-    let lines = simulation.scene().sections.iter();
-    let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
-    let named = sections.map(|mut section| {
-        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
-        let text = section_chart::text(&section, &contexts);
-        let [normal, shear, moment] = &contexts;
-        let SectionForces { normal: n, shear: v, moment: m } = &mut section.forces;
-        (*n, *v, *m) = (normal.rounded(*n), shear.rounded(*v), moment.rounded(*m));
-        (section, text)
-    });
-    named.collect()
 }

@@ -2,25 +2,22 @@
 
 use egui::epaint::RectShape;
 
-use crate::app::diagnosis::{Errors, error_text, load_text};
+use crate::app::diagnosis::{Errors, error_text, errors, load_text};
 use crate::app::interface::*;
 use crate::app::session::history::MotionSample;
-use crate::app::viewport::arrow::{LoadArrow, LoadedBody, is_seen};
+use crate::app::viewport::arrow::{LoadArrow, is_seen};
 use crate::app::viewport::arrow_painter::paint_arrow;
 use crate::app::viewport::bars::{KEY_WIDTH, LEGEND_HEIGHT, color_bar, has_legend, is_tiny, magnified, scale_bar};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::probe;
-use crate::app::viewport::projection::Projection;
-use crate::assembly::MouseSpring;
+use crate::app::viewport::projection::{DrawnBody, Projection};
 use crate::section::{Section, SectionForces};
-use crate::simulation::SupportReaction;
+use crate::study::section_chart;
 
 /// Content of the overlays.
 pub(crate) struct Overlay<'a> {
     pub view: &'a BodyView,
-    pub projection: Projection,
-    /// Drawn body with the loads of its scene.
-    pub body: LoadedBody<'a>,
+    pub body: DrawnBody<'a>,
     /// Scene that was asked for, if no equilibrium was found; another body is drawn in its place, dimmed.
     pub wanted: Option<&'a Scene>,
     pub options: &'a ViewOptions,
@@ -30,8 +27,10 @@ pub(crate) struct Overlay<'a> {
     pub exact: &'a [Vec<Vector2<f64>>],
     /// Note about the state.
     pub note: Option<&'a str>,
-    /// Content of the view of Explore and Learn; `None` for a pane, which shares line key and colour bar with all panes.
-    pub main: Option<MainOverlay<'a>>,
+    /// Session of Explore and Learn; `None` for a pane, which shares line key and colour bar with all panes.
+    pub session: Option<&'a Session>,
+    /// Displacement of the linear solution, m, if its outline is drawn.
+    pub ghost: Option<&'a [Vector2<f64>]>,
 }
 
 impl Overlay<'_> {
@@ -40,28 +39,6 @@ impl Overlay<'_> {
         let is_at_rest = self.body.positions == self.body.system.mesh().nodes();
         self.wanted.filter(|_| is_at_rest).unwrap_or(self.body.scene)
     }
-}
-
-/// Content of the overlays that a pane of Compare does not have.
-pub(crate) struct MainOverlay<'a> {
-    /// Displacement of the linear solution, m, if its outline is drawn.
-    pub ghost: Option<&'a [Vector2<f64>]>,
-    /// For a reference that follows a dragged load: `true` if the body has moved far since it was asked for.
-    pub live: Option<bool>,
-    /// Grab of the body, and its force, N.
-    pub mouse_spring: Option<(&'a MouseSpring, Vector2<f64>)>,
-    /// Recorded past of the motion.
-    pub playback: &'a Playback,
-    /// Sections of the scene, each with its forces as text.
-    pub sections: &'a [(Section, String)],
-    /// Reactions of the supports, if one of them moves.
-    pub reactions: &'a [SupportReaction],
-    /// Scene of the reference solution.
-    pub exact_scene: &'a Scene,
-    /// Errors of the tip displacement, of the solution and of linear theory.
-    pub errors: Errors,
-    /// Relative changes of the area of the drawn body and of the linear solution.
-    pub areas: [Option<f64>; 2],
 }
 
 /// Paints all overlays; those of a pane are at the body only.
@@ -77,17 +54,17 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
     outlines(painter, overlay, &palette);
     let mut labels = Labels { painter, visuals, taken: Vec::new() };
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
-    if let Some(main) = &overlay.main {
-        labels.taken.extend(key(painter, overlay, main, &palette));
+    if let Some(session) = overlay.session {
+        labels.taken.extend(key(painter, overlay, session, &palette));
         labels.taken.extend(legend(painter, overlay, &palette));
     }
     on_body(&mut labels, overlay);
-    if let Some(main) = &overlay.main {
-        scale_bar(painter, rect, &overlay.projection.camera, &palette);
-        pull(&mut labels, overlay, main);
+    if let Some(session) = overlay.session {
+        scale_bar(painter, rect, &overlay.body.projection.camera, &palette);
+        pull(&mut labels, overlay, session);
     }
     if let Some(note) = overlay.note {
-        let (below, above, beside) = if overlay.main.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
+        let (below, above, beside) = if overlay.session.is_some() { (46.0, 84.0, 48.0) } else { (8.0, 8.0, 24.0) };
         let places = [
             (rect.center_top() + vec2(0.0, below), Align2::CENTER_TOP),
             (rect.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM),
@@ -99,7 +76,7 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
 
 /// Returns the first of several places at which a text does not cross the body's outline, else the first one.
 fn beside_body(labels: &Labels<'_>, overlay: &Overlay<'_>, text: &str, places: &[(Pos2, Align2)]) -> (Pos2, Align2) {
-    let (projection, geometry) = (&overlay.projection, &overlay.view.body.geometry);
+    let (projection, geometry) = (&overlay.body.projection, overlay.body.geometry);
     let position = |node: u32| overlay.body.positions[node as usize];
     let on_line = |point| projection.point(geometry.point(point, &position));
     let size = labels.painter.layout_no_wrap(text.to_owned(), FontId::proportional(BODY), Color32::WHITE).size();
@@ -118,7 +95,7 @@ pub(crate) fn dim(painter: &Painter, rect: Rect, palette: &Palette) {
 
 /// Paints the outlines of the body, of the body at rest, and of other solutions.
 fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
-    let (projection, geometry) = (&overlay.projection, &overlay.view.body.geometry);
+    let (projection, geometry) = (&overlay.body.projection, overlay.body.geometry);
     let draw = |place: &dyn Fn(u32) -> Vector2<f64>, stroke: Stroke| {
         for line in &geometry.outline {
             // Shorter pieces, points, would fade in the antialiasing; they are joined to the next one.
@@ -137,25 +114,25 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
             }
         }
     };
-    let rest = |n: u32| overlay.body.system.mesh().nodes()[n as usize];
+    let rest = |n: u32| overlay.body.mesh().nodes()[n as usize];
     let drawn = |n: u32, u: &[Vector2<f64>]| rest(n) + u[n as usize] * overlay.view.body.magnification;
     if overlay.options.lines.rest_outline {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
-    if let Some(linear) = overlay.main.as_ref().and_then(|main| main.ghost) {
+    if let Some(linear) = overlay.ghost {
         draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
     }
     if !overlay.apart {
         draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
     }
-    let is_late = overlay.main.as_ref().is_some_and(|main| main.live == Some(true));
+    let is_late = overlay.session.and_then(is_late) == Some(true);
     for line in overlay.exact.iter().filter(|_| !is_late) {
         // A background stroke keeps the line visible over the body.
         dashed(painter, projection, line, Stroke::new(3.5, palette.canvas.gamma_multiply(0.8)));
         dashed(painter, projection, line, Stroke::new(1.7, palette.exact));
     }
-    if let Some(main) = overlay.main.as_ref().filter(|_| overlay.options.lines.trail) {
-        trail(painter, overlay, main.playback, palette);
+    if let Some(session) = overlay.session.filter(|_| overlay.options.lines.trail) {
+        trail(painter, overlay, &session.playback, palette);
     }
 }
 
@@ -185,23 +162,43 @@ fn on_body(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
         }
         loads(labels, overlay, &palette);
         weights(labels, overlay, &palette);
-        if let Some(main) = &overlay.main {
-            moved_supports(labels, overlay, main.reactions, &palette);
+        if let Some(session) = overlay.session {
+            moved_supports(labels, overlay, session.simulation(), &palette);
         }
         probes(labels, overlay);
-        if let Some(main) = &overlay.main {
-            sections(labels, overlay, main.sections, &palette);
+        if let Some(session) = overlay.session {
+            sections(labels, overlay, &sections_of(session.drawn()), &palette);
         }
     }
 }
 
+/// For a reference that follows a dragged load, returns `true` if the body has moved far since it was asked for.
+fn is_late(session: &Session) -> Option<bool> {
+    session.live().map(|live| live.is_late(session.drawn()))
+}
+
 /// Returns the drawn sides of a named edge.
 fn edge_segments<'a>(overlay: &'a Overlay<'_>, edge: &str) -> impl Iterator<Item = [Pos2; 2]> + use<'a> {
-    let segments = overlay.body.system.mesh().edges().get(edge).into_iter().flatten();
+    let segments = overlay.body.mesh().edges().get(edge).into_iter().flatten();
     segments.flat_map(|side| side.nodes().windows(2)).filter_map(|piece| {
         let [from, to] = [*piece.first()?, *piece.get(1)?].map(|n| overlay.body.positions.get(n as usize).copied());
-        overlay.projection.segment(from?, to?)
+        overlay.body.projection.segment(from?, to?)
     })
+}
+
+/// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
+fn sections_of(simulation: &Simulation) -> Vec<(Section, String)> {
+    let lines = simulation.scene().sections.iter();
+    let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
+    let named = sections.map(|mut section| {
+        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
+        let text = section_chart::text(&section, &contexts);
+        let [normal, shear, moment] = &contexts;
+        let SectionForces { normal: n, shear: v, moment: m } = &mut section.forces;
+        (*n, *v, *m) = (normal.rounded(*n), shear.rounded(*v), moment.rounded(*m));
+        (section, text)
+    });
+    named.collect()
 }
 
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
@@ -210,10 +207,10 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
-    let (is_roomy, painter) = (has_legend(overlay.projection.rect.size()), labels.painter);
+    let (is_roomy, painter) = (has_legend(overlay.body.projection.rect.size()), labels.painter);
     for (i, (section, text)) in sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.view.body.magnification;
-        let [from, to] = [0, 1].map(|i| overlay.projection.point(end(i)));
+        let [from, to] = [0, 1].map(|i| overlay.body.projection.point(end(i)));
         // The axes of the cut as it is drawn: a magnified body has other ones.
         let (middle, tangent) = (from + (to - from) * 0.5, (to - from).normalized());
         let normal = -tangent.rot90();
@@ -265,11 +262,10 @@ fn probes(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
     const RADIUS: f32 = 3.5;
     /// Distances, points, by which a label moves down to a place beside the body.
     const SHIFTS: [f32; 9] = [0.0, -8.0, 28.0, -16.0, 36.0, -24.0, 44.0, -32.0, 52.0];
-    let (mesh, color) = (overlay.body.system.mesh(), labels.visuals.strong_text_color());
-    let drawn = |at: [f64; 2]| probe::place(mesh, overlay.body.positions, mesh.locate(at.into())?);
+    let color = labels.visuals.strong_text_color();
     for own in &overlay.body.scene.probes {
         let Place::At(at) = own.place else { continue };
-        let Some(at) = drawn(at).map(|at| overlay.projection.point(at)) else { continue };
+        let Some(at) = overlay.body.place(at.into()).map(|at| overlay.body.projection.point(at)) else { continue };
         labels.painter.circle(at, RADIUS, labels.visuals.extreme_bg_color, Stroke::new(1.5, color));
         // A label inside a thin body would hide it.
         let places = SHIFTS.map(|shift| (at + vec2(8.0, -4.0 + shift), Align2::LEFT_BOTTOM));
@@ -312,7 +308,7 @@ fn trail(painter: &Painter, overlay: &Overlay<'_>, playback: &Playback, palette:
     let stride = points.len().div_ceil(MAX_PIECES).max(1);
     let kept: Vec<_> = points.iter().rev().step_by(stride).collect();
     for (i, ends) in kept.windows(2).enumerate() {
-        if let Some(segment) = overlay.projection.segment(*ends[0], *ends[1]) {
+        if let Some(segment) = overlay.body.projection.segment(*ends[0], *ends[1]) {
             let age = i as f32 / kept.len() as f32;
             painter.line_segment(segment, Stroke::new(1.5, color.gamma_multiply(0.8 * (1.0 - age))));
         }
@@ -320,15 +316,17 @@ fn trail(painter: &Painter, overlay: &Overlay<'_>, playback: &Playback, palette:
 }
 
 /// Paints the mouse spring from the body to the pointer, with its force.
-fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>, main: &MainOverlay<'_>) {
+fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>, session: &Session) {
     /// Half width of a coil, points.
     const COIL: f32 = 5.0;
     const PITCH: f32 = 7.0;
-    let Some((spring, force)) = main.mouse_spring else { return };
+    // The force of a paused motion would be that of the pointer's velocity alone.
+    let is_shown = !session.is_motion() || session.is_running();
+    let Some((spring, force)) = session.simulation().mouse_spring().filter(|_| is_shown) else { return };
     let (painter, palette) = (labels.painter, Palette::new(labels.visuals));
-    let held = probe::place(overlay.body.system.mesh(), overlay.body.positions, spring.point());
+    let held = probe::place(overlay.body.mesh(), overlay.body.positions, spring.point());
     let held = held.unwrap_or_default();
-    let [from, to] = [held, spring.target()].map(|p| overlay.projection.point(p));
+    let [from, to] = [held, spring.target()].map(|p| overlay.body.projection.point(p));
     painter.circle_filled(from, 4.5, palette.mouse_spring);
     painter.circle_stroke(to, 7.0, Stroke::new(2.0, palette.mouse_spring));
     let vector = to - from;
@@ -366,12 +364,12 @@ fn supports(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
     let (positions, pattern) = (overlay.body.positions, overlay.body.system.pattern());
     let stroke = Stroke::new(1.5, palette.support);
     let mut drawn = vec![false; positions.len()];
-    for side in &overlay.view.body.geometry.boundary {
+    for side in &overlay.body.geometry.boundary {
         let both = [0, 1].map(|axis| side.ends().iter().all(|&end| pattern.fixed(end)[axis]));
         if both == [false, false] {
             continue;
         }
-        let [p, q] = side.ends().map(|n| overlay.projection.point(positions[n as usize]));
+        let [p, q] = side.ends().map(|n| overlay.body.projection.point(positions[n as usize]));
         // The outline runs counter-clockwise in the plane, so the outside is on its right; the window's y axis points
         // down.
         let along = (q - p).normalized();
@@ -401,7 +399,7 @@ fn supports(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
         }
         // A roller stands on the line that it moves along.
         let away = if fixed == [true, false] { vec2(-1.0, 0.0) } else { vec2(0.0, 1.0) };
-        let (p, across) = (overlay.projection.point(at), 7.0 * away.rot90());
+        let (p, across) = (overlay.body.projection.point(at), 7.0 * away.rot90());
         let foot = p + 11.0 * away;
         let triangle = vec![p, foot - across, foot + across];
         painter.add(egui::Shape::convex_polygon(triangle, palette.support.gamma_multiply(0.6), stroke));
@@ -414,15 +412,15 @@ fn supports(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
 
 fn loads(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
     // The filled arrow belongs to the body, and the outline is the load that was asked for.
-    let wanted = LoadedBody { scene: overlay.wanted.unwrap_or(overlay.body.scene), ..overlay.body };
+    let wanted = DrawnBody { scene: overlay.wanted.unwrap_or(overlay.body.scene), ..overlay.body };
     let is_outline = overlay.wanted.is_some();
     if is_outline {
-        for own in overlay.body.arrows(&overlay.projection).iter().filter(|own| own.value != 0.0) {
+        for own in overlay.body.arrows().iter().filter(|own| own.value != 0.0) {
             own.paint_shape(labels, palette.load, false);
         }
     }
     let hot = overlay.view.pointer.hot_arrow();
-    for arrow in wanted.arrows(&overlay.projection) {
+    for arrow in wanted.arrows() {
         let is_hot = hot.is_some_and(|grip| grip.arrow.load == arrow.load && grip.drag().is_none());
         arrow.paint(labels, palette.load, (is_hot, is_outline));
     }
@@ -455,15 +453,19 @@ fn weights(labels: &mut Labels<'_>, overlay: &Overlay<'_>, palette: &Palette) {
 }
 
 /// Paints the reaction of every moving support as an arrow.
-fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, reactions: &[SupportReaction], palette: &Palette) {
+fn moved_supports(labels: &mut Labels<'_>, overlay: &Overlay<'_>, simulation: &Simulation, palette: &Palette) {
     /// Length of the arrow of a reaction, which shows the direction only, points.
     const REACTION: f32 = 58.0;
-    for (support, reaction) in overlay.body.scene.supports.iter().zip(reactions).filter(|(s, _)| s.moves()) {
+    let held = simulation.problem().supports();
+    let reactions = if held.move_the_body() { simulation.support_reactions() } else { Vec::new() };
+    let supports = overlay.body.scene.supports.iter().zip(reactions).zip(held.all());
+    for ((support, reaction), held) in supports.filter(|((support, _), _)| support.moves()) {
         let direction = vec2(reaction.force.x as f32, -reaction.force.y as f32).normalized();
         if direction == Vec2::ZERO || !direction.is_finite() {
             continue;
         }
-        let middle = overlay.projection.point(reaction.middle);
+        let moved = (reaction.middle - held.middle) * overlay.view.body.magnification;
+        let middle = overlay.body.projection.point(held.middle + moved);
         // A reaction along the prescribed displacement pushes, and its arrow ends at the support; otherwise it begins
         // there.
         let pushes = reaction.force.dot(&Vector2::from(support.displacement)) >= 0.0;
@@ -520,36 +522,37 @@ fn legend(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) -> Option
 }
 
 /// Paints the line key with the error of each solution, and returns its area.
-fn key(painter: &Painter, overlay: &Overlay<'_>, main: &MainOverlay<'_>, palette: &Palette) -> Option<Rect> {
+fn key(painter: &Painter, overlay: &Overlay<'_>, session: &Session, palette: &Palette) -> Option<Rect> {
     const GAP: f32 = 16.0;
     const ROW: f32 = 20.0;
     let rect = overlay.view.rect;
     if rect.width() < KEY_WIDTH {
         return None;
     }
-    let values = |word: &str, [error, bound]: [Option<f64>; 2], area: Option<f64>| {
-        let error = error.filter(|_| main.live != Some(true));
-        let error = error.map(|error| format!("  {}", error_text(Some(error), bound, main.live.is_some())));
-        let area = area.map(|area| format!(" \u{b7} {}", area_text(area)));
-        [tr(word).to_owned(), error.unwrap_or_default(), area.unwrap_or_default()].concat()
+    let late = is_late(session);
+    let values = |word: &str, [error, bound]: [Option<f64>; 2], body: &Simulation| {
+        let error = error.filter(|_| late != Some(true));
+        let error = error.map(|error| format!("  {}", error_text(Some(error), bound, late.is_some())));
+        format!("{}{} \u{b7} {}", tr(word), error.unwrap_or_default(), area_text(body.area_change()))
     };
-    let Errors { own, bound, linear, .. } = main.errors;
+    let Errors { own, bound, linear, .. } = errors(session);
     let own = match overlay.body.scene.analysis {
-        Analysis::Static => values(overlay.named().solver.method.id(), [own, bound], main.areas[0]),
-        Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], main.areas[0]),
+        Analysis::Static => values(overlay.named().solver.method.id(), [own, bound], session.drawn()),
+        Analysis::Dynamic => values(overlay.body.scene.dynamics.integrator.id(), [None; 2], session.drawn()),
     };
     let mut lines = Vec::new();
     if overlay.view.body.magnification != 1.0 {
         lines.push((palette.text, None, magnified(overlay.view.body.magnification)));
     }
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
-    if main.ghost.is_some() {
-        let text = values(MethodKind::Linear.id(), [linear, None], main.areas[1]);
+    if let Some(solution) = session.linear().filter(|_| overlay.ghost.is_some()) {
+        let text = values(MethodKind::Linear.id(), [linear, None], solution);
         lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
         // A body in place of a search has another load.
-        let load = overlay.wanted.and_then(|_| load_text(main.exact_scene));
+        let scene = session.live().map_or(session.simulation().scene(), |live| &live.key);
+        let load = overlay.wanted.and_then(|_| load_text(scene));
         let text = load.map_or_else(|| tr("reference").to_owned(), |load| fill!("reference at %{load}", load));
         lines.push((palette.exact, Some(LegendMark::Dashes), text));
     }

@@ -242,7 +242,7 @@ impl Pointer {
     /// Returns the target at a position; arrows and bases come before the body, which they may cover, and a base before the
     /// shaft that begins at it.
     fn take(targets: &HitTargets<'_>, at: Pos2) -> Held {
-        let base = base::near(targets.bases, at);
+        let base = arrow::nearest(targets.bases, base::NEAR, |base| base.at.distance(at));
         if let Some(arrow) = arrow::under(targets.arrows, at, base.is_none()) {
             let drag = Drag::default();
             return Held::Tip(Grip { arrow: *arrow, pressed: at, last: at, has_moved: false, drag });

@@ -1,6 +1,7 @@
-//! Projection from the plane of the body to the window.
+//! Projection from the plane of the body to the window, and the drawn body.
 
 use crate::app::interface::*;
+use crate::app::viewport::probe;
 
 /// Projection from metres to window positions.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +30,50 @@ impl Projection {
         let [from, to] = clip(self.camera.to_view(a), self.camera.to_view(b), half)?;
         let place = |p: [f64; 2]| self.rect.center() + vec2(p[0] as f32, p[1] as f32);
         Some([place(from), place(to)])
+    }
+}
+
+/// Drawn body, and the scene whose loads and other objects are drawn on it.
+#[derive(Clone, Copy)]
+pub(crate) struct DrawnBody<'a> {
+    pub scene: &'a Scene,
+    pub system: &'a System,
+    pub geometry: &'a DisplayGeometry,
+    /// Drawn positions of the nodes, m.
+    pub positions: &'a [Vector2<f64>],
+    pub projection: Projection,
+    /// Simulated time, s.
+    pub time: f64,
+    /// Direction of the arrow of a zero force, degrees.
+    pub direction: f64,
+    /// Loads that the scene opens with.
+    pub opening: OpeningLoads,
+}
+
+impl DrawnBody<'_> {
+    pub(super) fn mesh(&self) -> &Mesh {
+        self.system.mesh()
+    }
+
+    /// Returns the drawn position of a point of the body, m.
+    pub(super) fn place(&self, rest: Vector2<f64>) -> Option<Vector2<f64>> {
+        probe::place(self.mesh(), self.positions, self.mesh().locate(rest)?)
+    }
+
+    /// Returns the drawn point of application of a load or a support, m: the middle of its edge, its node, or its point of
+    /// the body; `None` if the edge does not exist.
+    pub(super) fn applied(&self, place: &Place, at_point: bool) -> Option<Vector2<f64>> {
+        if let (Place::At(at), true) = (place, at_point)
+            && let Some(point) = self.mesh().locate((*at).into())
+        {
+            return probe::place(self.mesh(), self.positions, point);
+        }
+        let nodes = match place {
+            Place::Edge(name) => self.mesh().edge_nodes(name)?,
+            Place::At(at) => vec![self.mesh().nearest_node((*at).into())],
+        };
+        let sum = nodes.iter().map(|&n| self.positions.get(n as usize)).sum::<Option<Vector2<f64>>>()?;
+        (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
     }
 }
 

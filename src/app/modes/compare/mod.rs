@@ -475,8 +475,9 @@ impl Compare {
     /// their labels.
     fn margins(&self, input: &CompareInput<'_>, [width, height]: [f64; 2]) -> Margins {
         let place = Rect::from_min_size(egui::Pos2::ZERO, vec2(width as f32, height as f32));
-        let forces = self.panes.first().and_then(|pane| pane.forces(input));
-        let arrows = forces.map(|forces| forces.arrows(&Projection { camera: self.camera(), rect: place }));
+        let projection = Projection { camera: self.camera(), rect: place };
+        let body = self.panes.first().and_then(|pane| pane.drawn_body(projection, input));
+        let arrows = body.map(|body| body.arrows());
         let longest = |along: fn(egui::Vec2) -> f32| {
             let lengths = arrows.iter().flatten().map(|arrow| f64::from(along(arrow.vector())));
             lengths.fold(0.0, f64::max).min(ARROW_ROOM * height)

@@ -8,12 +8,12 @@ use crate::app::session::WILD;
 use crate::app::session::fallback::Fallback;
 use crate::app::session::run::{Condition, Run};
 use crate::app::task::solve::{Equations, Model};
-use crate::app::viewport::arrow::LoadedBody;
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::{CameraController, CameraMove};
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe;
+use crate::app::viewport::projection::DrawnBody;
 use crate::exact_beam::error_percent;
 
 /// Scene with settings of its own, compared with others.
@@ -144,10 +144,10 @@ impl Pane {
         self.run.model().map(Model::equations)
     }
 
-    /// Returns the load arrows on the displayed body: those of the scene that was asked for.
-    pub(super) fn forces<'a>(&'a self, input: &CompareInput<'a>) -> Option<LoadedBody<'a>> {
+    /// Returns the displayed body with the loads of the scene that was asked for.
+    pub(super) fn drawn_body<'a>(&'a self, projection: Projection, input: &CompareInput<'a>) -> Option<DrawnBody<'a>> {
         let time = self.simulation().map_or(0.0, |simulation| simulation.state().time());
-        self.view.forces(self.run.wanted.as_ref()?, time, (input.session, input.direction))
+        self.view.drawn_body(projection, (self.run.wanted.as_ref()?, time), (input.session, input.direction))
     }
 
     /// Computes the error of the result, if the reference solution is known. One that follows the load may be of a load
@@ -187,8 +187,8 @@ impl Pane {
     ) -> Interaction {
         let place = self.view.rect;
         let condition = self.run.condition();
-        let forces = self.forces(input);
-        let arrows = forces.map_or_else(Vec::new, |forces| forces.arrows(&self.view.projection(controller)));
+        let arrows = self.drawn_body(self.view.projection(controller), input);
+        let arrows = arrows.map_or_else(Vec::new, |body| body.arrows());
         let response = ui.interact(place, ui.scope_id().with(("body", number)), Sense::click_and_drag());
         // States that are no result show no values.
         let interactivity = if condition == Condition::Result { Interactivity::None } else { Interactivity::Absent };
@@ -204,19 +204,19 @@ impl Pane {
         let in_place = self.in_place().map(Simulation::scene);
         // The scene whose state diverges, if an equilibrium is displayed in its place.
         let wanted = self.run.wanted.as_ref().filter(|_| in_place.is_some());
-        if let Some(forces) = self.forces(input) {
-            let body = LoadedBody { scene: in_place.unwrap_or(forces.scene), ..forces };
+        if let Some(body) = self.drawn_body(self.view.projection(controller), input) {
+            let body = DrawnBody { scene: in_place.unwrap_or(body.scene), ..body };
             let note = wanted.map(|wanted| equilibrium_text(body.scene, wanted));
             let overlay = Overlay {
                 view: &self.view,
-                projection: self.view.projection(controller),
                 apart: false,
                 body,
                 wanted,
                 options: input.view,
                 exact: if wanted.is_some() { &[] } else { exact },
                 note: note.as_deref(),
-                main: None,
+                session: None,
+                ghost: None,
             };
             overlay::paint(&painter, &overlay, ui.visuals());
         }
