@@ -109,17 +109,12 @@ pub enum Drawer {
 }
 
 impl Drawer {
-    /// Returns the drawer that suits the analysis of `scene`.
+    /// Returns the drawer whose content a scene has.
     pub(crate) fn of(scene: &Scene) -> Self {
         match scene.analysis {
             Analysis::Static => Self::Section,
             Analysis::Dynamic => Self::Motion,
         }
-    }
-
-    /// Returns `true` if the scene has what the drawer shows.
-    pub(crate) fn suits(self, scene: &Scene) -> bool {
-        self == Self::of(scene)
     }
 
     /// Returns the drawer's name and a description of its content.
@@ -171,6 +166,12 @@ pub struct LineOptions {
     pub trail: bool,
 }
 
+impl Default for LineOptions {
+    fn default() -> Self {
+        Self { wireframe: true, rest_outline: true, ghost: true, exact: true, trail: true }
+    }
+}
+
 /// Bars and panel around the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayoutOptions {
@@ -184,8 +185,14 @@ pub struct LayoutOptions {
     pub narrow: bool,
 }
 
+impl Default for LayoutOptions {
+    fn default() -> Self {
+        Self { bars: true, panel: true, sheet: false, narrow: false }
+    }
+}
+
 /// Display options of the body, the plots and the bars.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ViewOptions {
     pub field: Field,
     /// Fixed limits of the colour map; `None` means the limits of the current values.
@@ -208,27 +215,6 @@ pub struct ViewOptions {
     pub help: bool,
     /// Name of the highlighted edge: the one whose name is under the pointer.
     pub edge: Option<String>,
-}
-
-impl Default for ViewOptions {
-    fn default() -> Self {
-        Self {
-            field: Field::default(),
-            fixed_range: None,
-            raw: false,
-            magnification: Magnification::None,
-            lines: LineOptions { wireframe: true, rest_outline: true, ghost: true, exact: true, trail: true },
-            mode: Mode::default(),
-            drawer: None,
-            motion_plot: MotionPlot::default(),
-            tab: MeasureTab::default(),
-            curve_plot: None,
-            layout: LayoutOptions { bars: true, panel: true, sheet: false, narrow: false },
-            why: false,
-            help: false,
-            edge: None,
-        }
-    }
 }
 
 impl ViewOptions {

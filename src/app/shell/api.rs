@@ -154,7 +154,7 @@ impl Lab {
         let view = &mut self.desk.view;
         view.layout.panel = settings.panel;
         let scene = self.desk.session.scene();
-        view.drawer = settings.drawer.filter(|drawer| drawer.suits(scene));
+        view.drawer = settings.drawer.filter(|drawer| *drawer == Drawer::of(scene));
         view.color_with(settings.color());
         self.settings = settings;
         if let Some(path) = self.desk.session.document().path() {

@@ -18,7 +18,7 @@ impl Lab {
         }
         if changed.scene {
             let scene = session.simulation().scene();
-            view.drawer = view.drawer.filter(|drawer| drawer.suits(scene));
+            view.drawer = view.drawer.filter(|drawer| *drawer == Drawer::of(scene));
         }
         let mesh = session.simulation().system().mesh();
         if changed.mesh {
@@ -102,7 +102,7 @@ impl Lab {
                 self.desk.compare.fit();
             }
             // The drawer of the other kind of scene does not exist here.
-            Action::Toggle(Toggle::Drawer(drawer)) if !drawer.suits(self.scene()) => {}
+            Action::Toggle(Toggle::Drawer(drawer)) if drawer != Drawer::of(self.scene()) => {}
             Action::Toggle(Toggle::Tab(tab)) if !MeasureTab::of(self.scene()).contains(&tab) => {}
             Action::Toggle(toggle) => {
                 self.desk.view.toggle(toggle);

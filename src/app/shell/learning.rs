@@ -37,7 +37,7 @@ impl Lab {
         let view = &mut self.desk.view;
         (view.mode, view.tab) = (mode, tab);
         // A drawer opened from a card stays open.
-        view.drawer = drawer.filter(|drawer| drawer.suits(self.desk.session.scene())).or(view.drawer);
+        view.drawer = drawer.filter(|drawer| *drawer == Drawer::of(self.desk.session.scene())).or(view.drawer);
     }
 
     /// Goes to card number `card`, from 0.
