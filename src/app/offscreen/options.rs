@@ -111,9 +111,8 @@ pub struct RecordOptions {
 }
 
 fn parse_field(text: &str) -> Result<Field, String> {
-    let known = || Field::ALL.map(Field::id).join(", ");
     let field = Field::ALL.into_iter().find(|field| field.id() == text);
-    field.ok_or_else(|| format!("expected one of {}", known()))
+    field.ok_or_else(|| format!("expected one of {}", Field::ALL.map(Field::id).join(", ")))
 }
 
 fn parse_magnification(text: &str) -> Result<Magnification, String> {

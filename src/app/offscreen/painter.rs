@@ -49,11 +49,12 @@ impl PaintStage {
     pub(crate) fn paint(
         &mut self,
         gpu: &Gpu,
-        target: &wgpu::TextureView,
+        target: &wgpu::Texture,
         screen: &ScreenDescriptor,
         primitives: &[ClippedPrimitive],
         views: &[View<'_>],
     ) {
+        let target = &target.create_view(&wgpu::TextureViewDescriptor::default());
         let ScreenDescriptor { size_in_pixels, pixels_per_point } = *screen;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.body.draw(gpu, &mut encoder, (target, size_in_pixels), views, f64::from(pixels_per_point));

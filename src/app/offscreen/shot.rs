@@ -41,11 +41,9 @@ pub fn shot(
     view.layout.bars = !options.no_panel;
     view.color_with(options.field);
     view.magnification = options.magnify.unwrap_or_default();
+    view.drawer = options.sections.then_some(Drawer::Section).or(options.motion.then_some(Drawer::Motion));
     if options.curve {
         lab.show_tab(MeasureTab::LoadCurve);
-    }
-    if options.sections {
-        lab.desk.view.drawer = Some(Drawer::Section);
     }
     if let Some(card) = options.learn {
         lab.show_card(card.into());
@@ -59,9 +57,6 @@ pub fn shot(
     }
     if options.limits {
         lab.show_tab(MeasureTab::HowFar);
-    }
-    if options.motion {
-        lab.desk.view.drawer = Some(Drawer::Motion);
     }
     if let Some(panes) = &options.compare {
         lab.show_comparison(panes);
@@ -165,16 +160,14 @@ impl<'a> Canvas<'a> {
         const FIRST_PASSES: u32 = 3;
         let Self { gpu, ctx, stage, target, screen, passes } = self;
         let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;
+        let points = egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point;
         let mut unused = Vec::new();
         let mut times = FrameTimes::default();
         let mut stage_start = Instant::now();
         let mut lap = || std::mem::replace(&mut stage_start, Instant::now()).elapsed();
         let primitives = loop {
             let mut input = egui::RawInput {
-                screen_rect: Some(egui::Rect::from_min_size(
-                    egui::Pos2::ZERO,
-                    egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point,
-                )),
+                screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, points)),
                 time: Some(f64::from(*passes)),
                 max_texture_side: Some(gpu.max_side() as usize),
                 focused: true,
@@ -195,13 +188,7 @@ impl<'a> Canvas<'a> {
             }
         };
         times.tessellate = lap();
-        stage.paint(
-            gpu,
-            &target.create_view(&wgpu::TextureViewDescriptor::default()),
-            screen,
-            &primitives,
-            &lab.views(screen.pixels_per_point),
-        );
+        stage.paint(gpu, target, screen, &primitives, &lab.views(pixels_per_point));
         for mut textures in unused {
             stage.free_textures(&mut textures);
         }

@@ -107,7 +107,6 @@ struct App {
     ctx: Context,
     /// Settings as stored in their file.
     settings: Settings,
-    settings_file: Option<PathBuf>,
     /// `true` if the file of the settings is to be made although they have their defaults: the next start is not the
     /// first one.
     needs_settings_file: bool,
@@ -172,7 +171,6 @@ impl App {
             lab,
             ctx,
             settings,
-            settings_file: file,
             needs_settings_file,
             recovery,
             open: None,
@@ -252,8 +250,7 @@ impl App {
         // A page saves the frame that it has drawn.
         let takes_screenshot = !IS_PAGE && requests.contains(&Request::Screenshot);
         let mut screenshot = takes_screenshot.then(|| open.graphics.screenshot(&screen, &primitives, &views));
-        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        open.graphics.stage.paint(&open.graphics.gpu, &view, &screen, &primitives, &views);
+        open.graphics.stage.paint(&open.graphics.gpu, &texture.texture, &screen, &primitives, &views);
         open.bare.window.pre_present_notify();
         open.graphics.gpu.queue.present(texture);
         open.graphics.stage.free_textures(&mut output.textures_delta);
@@ -400,8 +397,8 @@ impl App {
     fn keep_settings(&mut self) {
         let settings = self.lab.settings(&self.ctx);
         let is_due = std::mem::take(&mut self.needs_settings_file) || settings != self.settings;
-        if let (Some(file), true) = (&self.settings_file, is_due) {
-            match settings.save(&self.settings, file) {
+        if is_due && let Some(file) = Settings::file() {
+            match settings.save(&self.settings, &file) {
                 Ok(()) => self.settings = settings,
                 Err(error) => {
                     let reason = format!("{}: {error}", file.display());

@@ -87,7 +87,7 @@ impl Graphics {
         let Self { gpu, stage, configuration, .. } = self;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let target = gpu.target("screenshot", configuration.format, screen.size_in_pixels, 1, usage);
-        stage.paint(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), screen, primitives, views);
+        stage.paint(gpu, &target, screen, primitives, views);
         let picture = read_texture(gpu, &target).map_err(|error| error.to_string())?;
         picture.write_png(file.path()).map_err(|error| RenderError::from(error).to_string())?;
         Ok(file.path().to_owned())
