@@ -127,12 +127,8 @@ pub(crate) fn doubt(session: &Session, errors: &Errors) -> Option<String> {
         return Some(doubts.join(" · "));
     }
     let small = errors.own.filter(|&own| !is_large(own));
-    let off = session
-        .known_reference()
-        .filter(|_| small.is_some())?
-        .beam_off_by_percent
-        .filter(|&off| error_level(off) > 0)?;
-    Some(said(&Claim::beam_theory(off)))
+    let off = session.known_reference().filter(|_| small.is_some())?.beam_off_by_percent;
+    off.filter(|&off| error_level(off) > 0).map(|off| said(&Claim::beam_theory(off)))
 }
 
 /// Returns the reference's own error in words if it hides how large an error, percent, is.
@@ -228,9 +224,8 @@ pub(crate) fn summary(session: &Session, remedy: Option<&Remedy>) -> (String, bo
         _ => {}
     }
     if *simulation.status() == Status::Running && simulation.iterations() > 0 {
-        if let Some(part) =
-            simulation.equilibrium().map(|search| search.load_factor()).filter(|part| 0.0 < *part && *part < 1.0)
-        {
+        let part = simulation.equilibrium().map(|search| search.load_factor());
+        if let Some(part) = part.filter(|part| 0.0 < *part && *part < 1.0) {
             add(fill!("at %{part} of the load", part = percent(100.0 * part)));
         }
         add(fill!("residual %{residual}", residual = format!("{:.1e}", simulation.residual())));
@@ -345,15 +340,11 @@ pub(crate) fn explanation(session: &Session) -> Vec<String> {
         let counts = motion.counts();
         let (steps, solves) = (count(counts.steps, "step"), count(counts.solves, "back substitution"));
         lines.push(fill!("%{steps} so far, with %{solves}.", steps, solves));
-        lines.push(
-            tr(match session.scene().dynamics.integrator.entry().is_explicit() {
-                true => EXPLICIT,
-                false => {
-                    "A time step that does not converge is halved. The drift is the energy that the integrator adds."
-                }
-            })
-            .to_owned(),
-        );
+        let text = match session.scene().dynamics.integrator.entry().is_explicit() {
+            true => EXPLICIT,
+            false => "A time step that does not converge is halved. The drift is the energy that the integrator adds.",
+        };
+        lines.push(tr(text).to_owned());
         return lines;
     }
     lines.extend(notes_on_mesh(simulation).iter().map(|note| sentence(&said(note))));
@@ -459,13 +450,12 @@ pub(crate) fn remedy(session: &Session, errors: &Errors) -> Option<Remedy> {
         let mut scene = Box::new(scene.clone());
         scene.set_element(better);
         let text = fill!("%{error} error: three-node triangles lock in bending.", error = off);
+        let mut offer = fill!("Try %{element}", element = better.id());
         // A body that bends more rotates more, and the warped iteration may then diverge.
-        let offer = if scene.solver.method == MethodKind::Warped {
+        if scene.solver.method == MethodKind::Warped {
             scene.solver.method = MethodKind::Newton;
-            fill!("Try %{element} with newton", element = better.id())
-        } else {
-            fill!("Try %{element}", element = better.id())
-        };
+            offer = fill!("Try %{element} with newton", element = better.id());
+        }
         return Some(Remedy { text, offer, action: Action::Edit("Element", scene) });
     }
     let mut scene = Box::new(scene.clone());

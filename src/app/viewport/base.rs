@@ -68,7 +68,7 @@ impl DrawnBody<'_> {
         let far = |along: f64| f64::from(NEAR) < along.abs() * self.projection.camera.scale;
         let ends = [from + INSIDE * (to - from), to - INSIDE * (to - from)].into_iter().enumerate();
         let ends = ends.filter(|(_, along)| far(*along)).filter_map(|(end, along)| {
-            Some((Object::SectionEnd { section, end }, self.place(line.at + line.tangent() * along)?))
+            Some((Object::SectionEnd(section, end), self.place(line.at + line.tangent() * along)?))
         });
         ends.collect()
     }
@@ -126,7 +126,7 @@ impl DrawnBody<'_> {
         let (place, _) = self.target(object, pointer)?;
         let mut scene = self.scene.clone();
         match (object, place) {
-            (Object::SectionEnd { section, end }, Place::At(at)) => {
+            (Object::SectionEnd(section, end), Place::At(at)) => {
                 *scene.sections.get_mut(section)? = self.turned(section, end, at.into())?;
             }
             (_, place) => object.change(&mut scene, self.system, ObjectChange::Move(place)),
@@ -146,14 +146,14 @@ impl DrawnBody<'_> {
         };
         let at = self.projection.point(at);
         let from = match hot.base.object {
-            Object::SectionEnd { section, .. } => self.scene.sections.get(section).and_then(|line| self.place(line.at)),
+            Object::SectionEnd(section, _) => self.scene.sections.get(section).and_then(|line| self.place(line.at)),
             _ => None,
         };
         let from = from.map_or(hot.base.at, |pivot| self.projection.point(pivot));
         painter.line_segment([from, at], Stroke::new(1.0, color));
         painter.circle_filled(at, 4.0, color);
         let text = match (place, hot.base.object) {
-            (Place::At(to), Object::SectionEnd { section, end }) => {
+            (Place::At(to), Object::SectionEnd(section, end)) => {
                 let turned = self.turned(section, end, to.into());
                 turned.map_or_else(String::new, |line| {
                     fill!("normal %{angle}", angle = editable(line.angle.to_degrees(), "°"))

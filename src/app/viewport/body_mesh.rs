@@ -58,10 +58,6 @@ impl Recent {
     /// Time constant of the narrowing of the range, s.
     const EASE: f64 = 0.7;
 
-    fn new(field: Field, now: f64, largest: f64) -> Self {
-        Self { field, since: now, now, window: largest, before: largest, shown: largest }
-    }
-
     /// Adds the field's largest magnitude at `now`, playing time in s. Returns the magnitude to show: it grows at once,
     /// and falls slowly to the largest of both windows.
     fn extend(&mut self, now: f64, largest: f64) -> f64 {
@@ -124,8 +120,9 @@ impl BodyMesh {
         }
         let now = played.unwrap_or_default();
         let goes_on = |recent: &Recent| played.is_some() && recent.field == view.field && view.fixed_range.is_none();
-        let recent = self.recent.filter(goes_on).unwrap_or(Recent::new(view.field, now, self.largest));
-        let recent = self.recent.insert(recent);
+        let (field, largest) = (view.field, self.largest);
+        let new = Recent { field, since: now, now, window: largest, before: largest, shown: largest };
+        let recent = self.recent.insert(self.recent.filter(goes_on).unwrap_or(new));
         self.range = view.fixed_range.unwrap_or_else(|| view.field.range(recent.extend(now, self.largest)));
     }
 

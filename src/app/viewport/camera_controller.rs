@@ -31,11 +31,8 @@ pub(crate) fn grow_to_linear(whole: Box2, linear: impl Iterator<Item = Vector2<f
 }
 
 /// Movement of the camera by the pointer.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CameraMove {
-    /// No movement.
-    #[default]
-    None,
     /// Movement to another camera.
     To(Camera),
     /// Return to the camera that fits the whole body.
@@ -86,11 +83,11 @@ impl CameraController {
     }
 
     /// Moves the camera as the pointer has asked for.
-    pub(crate) fn follow(&mut self, pointer: CameraMove) {
+    pub(crate) fn follow(&mut self, pointer: Option<CameraMove>) {
         match pointer {
-            CameraMove::None => {}
-            CameraMove::To(camera) => self.set_camera(camera),
-            CameraMove::Fit => self.own = None,
+            Some(CameraMove::To(camera)) => self.set_camera(camera),
+            Some(CameraMove::Fit) => self.own = None,
+            None => {}
         }
     }
 

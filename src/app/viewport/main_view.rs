@@ -335,7 +335,7 @@ impl MainView {
             let whole = points.fold(content.mesh().bounds().into(), |whole, point| grow(whole, &point));
             self.swept = Some(whole).filter(|_| is_motion);
             self.camera.set_whole(whole);
-            self.margins = self.with_room_for_arrows(content, least_margins(size), whole, size);
+            self.margins = self.with_room_for_arrows(content, whole);
         }
         let fitted = self.fitted(content, self.camera.whole, size);
         self.camera.turn_to(ui, fitted, self.eases, drags);
@@ -371,17 +371,12 @@ impl MainView {
         Camera::fit(low, high, view, self.margins)
     }
 
-    /// Returns the margins around a box: the least ones, enlarged by the room that the arrows need, points.
-    fn with_room_for_arrows(
-        &self,
-        content: &Content<'_>,
-        least: Margins,
-        [low, high]: Box2,
-        view: [f64; 2],
-    ) -> Margins {
+    /// Returns the margins around a box, m: the least ones, enlarged by the room that the arrows need, points.
+    fn with_room_for_arrows(&self, content: &Content<'_>, [low, high]: Box2) -> Margins {
         /// Space beyond a tip for the label of its force, points.
         const BEYOND: f32 = 36.0;
-        let size = egui::vec2(view[0] as f32, view[1] as f32);
+        let (view, size) = (self.size(), self.view.rect.size());
+        let least = least_margins(view);
         if content.is_apart() || bars::is_tiny(content.options, size) {
             return least;
         }

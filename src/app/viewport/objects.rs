@@ -17,11 +17,8 @@ pub(crate) enum Object {
     Support(usize),
     Probe(usize),
     Section(usize),
-    /// End of the cut of a section, which turns about the point of the section.
-    SectionEnd {
-        section: usize,
-        end: usize,
-    },
+    /// End of the cut of a section, 0 or 1, which turns about the point of the section.
+    SectionEnd(usize, usize),
 }
 
 impl Object {
@@ -36,7 +33,7 @@ impl Object {
             Self::Support(i) => scene.supports.get(i).map(|support| support.place.clone()),
             Self::Probe(i) => scene.probes.get(i).map(|probe| probe.place.clone()),
             Self::Section(i) => scene.sections.get(i).map(|line| Place::At(line.at.into())),
-            Self::SectionEnd { .. } => None,
+            Self::SectionEnd(..) => None,
         }
     }
 
@@ -51,9 +48,7 @@ impl Object {
             (Self::Probe(i), ObjectChange::Remove) => _ = scene.probes.remove(i),
             (Self::Section(i), ObjectChange::Remove) => _ = scene.sections.remove(i),
             (Self::Load(i), change) => match (&mut scene.loads[i], change) {
-                (Load::Force { place, at_point, width, .. }, change) => {
-                    change.apply(system, (place, at_point, width));
-                }
+                (Load::Force { place, at_point, width, .. }, change) => change.apply(system, (place, at_point, width)),
                 (Load::Moment { edge, .. }, ObjectChange::Move(Place::Edge(to))) => *edge = to,
                 _ => {}
             },
@@ -274,7 +269,7 @@ fn removals(scene: &Scene, system: &System, (at, near): (Vector2<f64>, f64), edg
             Object::Probe(i) => {
                 (distance <= near, fill!("Remove the probe %{name}", name = tr(&scene.probes.get(i)?.name)))
             }
-            Object::Section(section) | Object::SectionEnd { section, .. } => {
+            Object::Section(section) | Object::SectionEnd(section, _) => {
                 let line = scene.sections.get(section)?;
                 (line.normal().dot(&(at - line.at)).abs() <= near, tr("Remove this section").to_owned())
             }

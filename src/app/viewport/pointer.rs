@@ -87,7 +87,7 @@ pub(crate) struct Pointer {
 /// Interaction of the pointer with the view in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Interaction {
-    pub camera: CameraMove,
+    pub camera: Option<CameraMove>,
     pub grab: Grab,
     /// Index of a load, its new value, and the new direction of a force, degrees.
     pub load: Option<(usize, (f64, Option<f64>))>,
@@ -216,7 +216,7 @@ impl Pointer {
         if response.double_clicked() {
             match self.held {
                 Held::Tip(grip) => interaction.restore = Some(grip.arrow.load),
-                Held::Body(_) | Held::Point(_) | Held::Space => interaction.camera = CameraMove::Fit,
+                Held::Body(_) | Held::Point(_) | Held::Space => interaction.camera = Some(CameraMove::Fit),
                 Held::Base(_) | Held::Nothing => {}
             }
         } else if response.clicked() {
@@ -233,9 +233,7 @@ impl Pointer {
             self.held = Held::Nothing;
         }
         self.hover(ui, targets, down);
-        if interaction.camera == CameraMove::None {
-            interaction.camera = self.move_camera(ui, targets, fingers);
-        }
+        interaction.camera = interaction.camera.or_else(|| self.move_camera(ui, targets, fingers));
         interaction
     }
 
@@ -275,7 +273,7 @@ impl Pointer {
                 if has_left || held.dragged.is_some() {
                     held.dragged = Some(at);
                     // The body does not depend on its cuts, whose forces follow the pointer.
-                    let is_cut = matches!(held.base.object, Object::Section(_) | Object::SectionEnd { .. });
+                    let is_cut = matches!(held.base.object, Object::Section(_) | Object::SectionEnd(..));
                     interaction.dropped = is_cut.then_some((held.base.object, at));
                 }
             }
@@ -312,16 +310,16 @@ impl Pointer {
     }
 
     /// Moves and zooms the view.
-    fn move_camera(&mut self, ui: &Ui, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> CameraMove {
+    fn move_camera(&mut self, ui: &Ui, targets: &HitTargets<'_>, fingers: Option<Vec2>) -> Option<CameraMove> {
         let (response, mut camera) = (targets.response, targets.camera.shown);
-        let mut look = CameraMove::None;
+        let mut look = None;
         // Two fingers move the view, whatever is under them.
         // A click whose pointer moves by a few points does not move the view.
         let is_drag = ui.input(|i| i.pointer.is_decidedly_dragging());
         let drag = fingers.unwrap_or(if is_drag { response.drag_delta() } else { Vec2::ZERO });
         if drag != Vec2::ZERO && !self.holds() {
             camera.pan([f64::from(drag.x), f64::from(drag.y)]);
-            look = CameraMove::To(camera);
+            look = Some(CameraMove::To(camera));
         }
         let is_zoom = |event: &Event| matches!(event, Event::MouseWheel { .. } | Event::Zoom(_));
         if ui.input(|i| i.events.iter().any(is_zoom)) {
@@ -336,7 +334,7 @@ impl Pointer {
                 let size = response.rect.size();
                 let scales = targets.camera.scales([f64::from(size.x), f64::from(size.y)]);
                 camera.zoom(factor, [f64::from(at.x), f64::from(at.y)], scales);
-                look = CameraMove::To(camera);
+                look = Some(CameraMove::To(camera));
             }
         }
         look

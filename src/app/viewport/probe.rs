@@ -61,25 +61,17 @@ fn rows_of(point: &PointState, in_material: bool) -> Vec<Row> {
     let out_of_plane = point.cauchy.map(|stress| stress.zz).filter(|stress| *stress != 0.0);
     let normal =
         out_of_plane.map(|stress| ("σ_z", engineering(three_digits(stress), "Pa"), "Cauchy stress out of the plane"));
-    rows.extend([
-        (stresses, none(two(x, y)), "Cauchy stress, which follows from ε"),
-        (shear_stress, none(one(xy)), "Cauchy stress, which follows from ε"),
-    ]);
+    let stress = "Cauchy stress, which follows from ε";
+    rows.extend([(stresses, none(two(x, y)), stress), (shear_stress, none(one(xy)), stress)]);
     rows.extend(normal);
+    let of_principal = "Principal stresses in the plane, and the direction of the larger one; drawn at the point";
+    let principal_strains = two(Field::LargerPrincipalStrain, Field::SmallerPrincipalStrain);
     rows.extend([
-        (
-            "σ_1, σ_2",
-            none(principal) + &direction,
-            "Principal stresses in the plane, and the direction of the larger one; drawn at the point",
-        ),
+        ("σ_1, σ_2", none(principal) + &direction, of_principal),
         ("von Mises", none(one(Field::VonMises)), "Von Mises stress, from the Cauchy stress, which follows from ε"),
         (strains, none(two(Field::StrainX, Field::StrainY)), strain),
         (shear_strain, none(one(Field::ShearStrain)), strain),
-        (
-            "ε_1, ε_2",
-            none(two(Field::LargerPrincipalStrain, Field::SmallerPrincipalStrain)),
-            "Principal strains in the plane",
-        ),
+        ("ε_1, ε_2", none(principal_strains), "Principal strains in the plane"),
         ("ψ", none(one(Field::EnergyDensity)), "Strain energy density"),
     ]);
     rows

@@ -284,20 +284,19 @@ impl FirstText {
     }
 }
 
-/// Reads a number within a limit; one without a unit has that of the text `shown` before. The error says what was expected.
+/// Reads a number within a limit: `2.5`, `1e4`, `12 kN`, `30 000`; one without a unit has that of the text `shown` before. The
+/// error says what was expected.
 pub(crate) fn read(text: &str, shown: &str, limit: Limit) -> Result<f64, Sentence> {
     let is_bare = text.trim_end().ends_with(|last: char| last.is_ascii_digit() || last == '.');
     let unit = shown.split_once(' ').map_or("", |(_, unit)| unit);
     let typed = if is_bare && text.trim() != shown { format!("{} {unit}", text.trim()) } else { text.to_owned() };
-    match parse(&typed, limit.unit) {
+    // A prefix without a unit belongs to the field's unit: `3k` is 3 kN.
+    let parse = |text: &str| units::parse(text, limit.unit);
+    match parse(&typed).or_else(|error| parse(&format!("{}{}", typed.trim(), limit.unit)).map_err(|_| error)) {
         Ok(number) if number.is_finite() => limit.check(number).map(|()| number),
         Ok(_) | Err(UnitError { has_number: false, .. }) => {
-            let example = editable(12.0, limit.unit);
-            Err(sentence!(
-                "expected a number, such as %{example}, got \u{201c}%{got}\u{201d}",
-                example,
-                got = text.trim()
-            ))
+            let (example, got) = (editable(12.0, limit.unit), text.trim());
+            Err(sentence!("expected a number, such as %{example}, got \u{201c}%{got}\u{201d}", example, got))
         }
         Err(error) => Err(error.message),
     }
@@ -346,12 +345,6 @@ fn quiet_tip(response: Response, tip: &str) {
     if !is_used && !was_used {
         response.on_hover_text(tip);
     }
-}
-
-/// Parses a typed number; `unit` applies if it has none: `2.5`, `1e4`, `12 kN`, `30 000`, and `3k` for 3 kN.
-fn parse(text: &str, unit: &'static str) -> Result<f64, UnitError> {
-    // A prefix without a unit belongs to the field's unit.
-    units::parse(text, unit).or_else(|error| units::parse(&format!("{}{unit}", text.trim()), unit).map_err(|_| error))
 }
 
 #[cfg(test)]

@@ -185,16 +185,13 @@ pub(crate) fn install(ctx: &egui::Context) {
     for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
         ctx.style_mut_of(theme, |style| {
             style.visuals = palette.visuals();
-            let sizes = [
-                (TextStyle::Body, BODY, FontFamily::Proportional),
-                (TextStyle::Button, BODY, FontFamily::Proportional),
-                (TextStyle::Monospace, 13.0, FontFamily::Monospace),
-                (TextStyle::Small, SMALL, FontFamily::Proportional),
-                (TextStyle::Heading, HEADLINE, FontFamily::Proportional),
-            ];
-            for (text, size, family) in sizes {
-                style.text_styles.insert(text, FontId::new(size, family));
-            }
+            style.text_styles.extend([
+                (TextStyle::Body, FontId::proportional(BODY)),
+                (TextStyle::Button, FontId::proportional(BODY)),
+                (TextStyle::Monospace, FontId::monospace(13.0)),
+                (TextStyle::Small, FontId::proportional(SMALL)),
+                (TextStyle::Heading, FontId::proportional(HEADLINE)),
+            ]);
             style.spacing.item_spacing = egui::vec2(8.0, 6.0);
             style.spacing.button_padding = egui::vec2(8.0, 3.0);
             style.spacing.interact_size.y = 24.0;

@@ -9,7 +9,7 @@ use crate::app::session::fallback::Fallback;
 use crate::app::session::run::{Condition, Run};
 use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::body_view::BodyView;
-use crate::app::viewport::camera_controller::{CameraController, CameraMove};
+use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay::{self, Overlay};
 use crate::app::viewport::pointer::{HitTargets, Interaction, Interactivity};
 use crate::app::viewport::probe;
@@ -196,7 +196,7 @@ impl Pane {
         let (camera, arrows) = (&*controller, &arrows);
         let targets = HitTargets { response: &response, camera, body, interactivity, arrows, bases: &[] };
         let interaction = pointer.process(ui, &targets);
-        if interaction.camera != CameraMove::None {
+        if interaction.camera.is_some() {
             controller.follow(interaction.camera);
             ui.ctx().request_repaint();
         }
