@@ -24,7 +24,7 @@ pub(super) use crate::app::widgets::legend::{self, LegendMark};
 pub(super) use crate::app::widgets::load_scale::{LoadScale, STRAIGHT};
 pub(super) use crate::app::widgets::number_field::{Messages, NumberField, NumberRow, show_message};
 pub(super) use crate::app::widgets::palette::{BODY, HEADLINE, Palette, SMALL};
-pub(super) use crate::app::widgets::text::{Labels, UNKNOWN, boxed_text, semibold, with_keys};
+pub(super) use crate::app::widgets::text::{Labels, UNKNOWN, semibold, with_keys};
 pub(super) use crate::assembly::{Edge, System};
 pub(super) use crate::dynamics::INTEGRATORS;
 pub(super) use crate::format::{

@@ -86,7 +86,7 @@ impl Lab {
         }
         let (visuals, color) = (ui.visuals(), ui.visuals().strong_text_color());
         let at = rect.center_bottom() - vec2(0.0, if self.desk.session.is_motion() { 48.0 } else { 24.0 });
-        boxed_text(painter, at, Align2::CENTER_BOTTOM, message, visuals, color, rect.width() - 48.0);
+        Labels::new(painter, visuals).add(at, Align2::CENTER_BOTTOM, message, color, rect.width() - 48.0);
         // For screen readers.
         let place = Rect::from_center_size(rect.center_bottom(), Vec2::ZERO);
         let said = ui.interact(place, Id::unique("toast"), Sense::empty());

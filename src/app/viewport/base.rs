@@ -141,7 +141,7 @@ impl DrawnBody<'_> {
         let Some(pointer) = hot.dragged else { return };
         let Some((place, at)) = self.target(hot.base.object, pointer) else {
             let text = tr("not on the body: stays where it was");
-            boxed_text(painter, pointer, Align2::CENTER_BOTTOM, text, visuals, color, 240.0);
+            Labels::new(painter, visuals).add(pointer, Align2::CENTER_BOTTOM, text, color, 240.0);
             return;
         };
         let at = self.projection.point(at);
@@ -169,7 +169,7 @@ impl DrawnBody<'_> {
             (Place::At(at), _) => engineering_pair(at.map(three_digits), "m"),
         };
         let above = at - vec2(0.0, 12.0);
-        boxed_text(painter, above, Align2::CENTER_BOTTOM, &text, visuals, color, 240.0);
+        Labels::new(painter, visuals).add(above, Align2::CENTER_BOTTOM, &text, color, 240.0);
     }
 }
 

@@ -63,6 +63,6 @@ impl BodyView {
         let text = format!("{}: {value}\nu = {}", tr(field.name()), probe::metres(u));
         let (place, visuals) = (at + vec2(16.0, 18.0), ui.visuals());
         let color = visuals.strong_text_color();
-        boxed_text(&ui.painter_at(self.rect), place, Align2::LEFT_TOP, &text, visuals, color, 320.0);
+        Labels::new(&ui.painter_at(self.rect), visuals).add(place, Align2::LEFT_TOP, &text, color, 320.0);
     }
 }

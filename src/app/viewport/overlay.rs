@@ -11,7 +11,7 @@ use crate::app::viewport::bars::{KEY_WIDTH, LEGEND_HEIGHT, color_bar, has_legend
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::{DrawnBody, Projection};
-use crate::section::{Section, SectionForces};
+use crate::section::Section;
 use crate::study::section_chart;
 
 /// Content of the overlays.
@@ -52,7 +52,7 @@ pub(crate) fn paint(painter: &Painter, overlay: &Overlay<'_>, visuals: &Visuals)
         dim(painter, rect, &palette);
     }
     outlines(painter, overlay, &palette);
-    let mut labels = Labels { painter, visuals, taken: Vec::new() };
+    let mut labels = Labels::new(painter, visuals);
     // Painted below the arrows, so that their tips stay visible and can be grabbed anywhere.
     if let Some(session) = overlay.session {
         labels.taken.extend(key(painter, overlay, session, &palette));
@@ -167,7 +167,7 @@ fn on_body(labels: &mut Labels<'_>, overlay: &Overlay<'_>) {
         }
         probes(labels, overlay);
         if let Some(session) = overlay.session {
-            sections(labels, overlay, &sections_of(session.drawn()), &palette);
+            sections(labels, overlay, session.drawn(), &palette);
         }
     }
 }
@@ -186,29 +186,16 @@ fn edge_segments<'a>(overlay: &'a Overlay<'_>, edge: &str) -> impl Iterator<Item
     })
 }
 
-/// Returns the sections of a state, each with its forces as text; forces below the rounding errors of the solve are 0.
-fn sections_of(simulation: &Simulation) -> Vec<(Section, String)> {
-    let lines = simulation.scene().sections.iter();
-    let sections = lines.filter_map(|&line| simulation.section_forces(line).ok());
-    let named = sections.map(|mut section| {
-        let contexts = section_chart::contexts(std::slice::from_ref(&section), simulation);
-        let text = section_chart::text(&section, &contexts);
-        let [normal, shear, moment] = &contexts;
-        let SectionForces { normal: n, shear: v, moment: m } = &mut section.forces;
-        (*n, *v, *m) = (normal.rounded(*n), shear.rounded(*v), moment.rounded(*m));
-        (section, text)
-    });
-    named.collect()
-}
-
 /// Paints the sections: the cut, and arrows of the forces on the part behind it, which show directions only.
-fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section, String)], palette: &Palette) {
+fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, simulation: &Simulation, palette: &Palette) {
     /// Length of an arrow and of the part of the cut outside the body, points.
     const ARROW: f32 = 46.0;
     const OUTSIDE: f32 = 8.0;
     // A small view has room for the numbers of the sections only; the panel has their values.
     let (is_roomy, painter) = (has_legend(overlay.body.projection.rect.size()), labels.painter);
-    for (i, (section, text)) in sections.iter().enumerate() {
+    let lines = simulation.scene().sections.iter();
+    let sections: Vec<Section> = lines.filter_map(|&line| simulation.section_forces(line).ok()).collect();
+    for (i, section) in sections.iter().enumerate() {
         let end = |i: usize| section.rest[i] + (section.ends[i] - section.rest[i]) * overlay.view.body.magnification;
         let [from, to] = [0, 1].map(|i| overlay.body.projection.point(end(i)));
         // The axes of the cut as it is drawn: a magnified body has other ones.
@@ -227,7 +214,11 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section
         // The plots have positive distances at this end.
         let plus = to + tangent * OUTSIDE - normal * 9.0;
         painter.text(plus, Align2::CENTER_CENTER, "+", FontId::proportional(BODY), color);
-        let SectionForces { normal: tension, shear, moment } = section.forces;
+        // Forces below the rounding errors of the solve are 0.
+        let contexts = section_chart::contexts(std::slice::from_ref(section), simulation);
+        let text = section_chart::text(section, &contexts);
+        let forces = [section.forces.normal, section.forces.shear, section.forces.moment];
+        let [tension, shear, moment] = std::array::from_fn(|i| contexts[i].rounded(forces[i]));
         let least = 1e-3 * (section.force.norm() + moment.abs() / overlay.body.system.size());
         for (force, axis) in [(tension, normal), (shear, tangent)] {
             if force.abs() > least {
@@ -248,7 +239,7 @@ fn sections(labels: &mut Labels<'_>, overlay: &Overlay<'_>, sections: &[(Section
             _ => Align2::CENTER_BOTTOM,
         };
         let label = match (is_roomy, sections.len()) {
-            (true, 1) => text.clone(),
+            (true, 1) => text,
             (true, _) => format!("{}: {text}", i + 1),
             (false, 1) => continue,
             (false, _) => (i + 1).to_string(),
@@ -348,11 +339,8 @@ fn pull(labels: &mut Labels<'_>, overlay: &Overlay<'_>, session: &Session) {
     } else {
         painter.line_segment([from, to], stroke);
     }
-    let label = format!(
-        "{}, {:.0}°",
-        engineering(three_digits(force.norm()), "N"),
-        force.y.atan2(force.x).to_degrees().round() + 0.0
-    );
+    let angle = force.y.atan2(force.x).to_degrees().round() + 0.0;
+    let label = format!("{}, {angle:.0}°", engineering(three_digits(force.norm()), "N"));
     labels.add(to + vec2(0.0, -14.0), Align2::CENTER_BOTTOM, &label, palette.mouse_spring, 200.0);
 }
 

@@ -4,7 +4,7 @@ use egui::epaint::TextShape;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, vec2};
 
 use crate::app::widgets::palette::{Palette, SMALL};
-use crate::app::widgets::text::boxed_text;
+use crate::app::widgets::text::Labels;
 use crate::plot::{self, Anchor, ChartFrame, DrawTarget, Text};
 use crate::study::figure::Ink;
 
@@ -119,6 +119,6 @@ pub(crate) fn hover<T>(
     let (painter, color) = (ui.painter_at(whole), ui.visuals().text_color());
     painter.circle_stroke(at, 5.0, Stroke::new(1.5, color));
     let above = at - vec2(0.0, 10.0);
-    boxed_text(&painter, above, Align2::CENTER_BOTTOM, &text(&value), ui.visuals(), color, whole.width());
+    Labels::new(&painter, ui.visuals()).add(above, Align2::CENTER_BOTTOM, &text(&value), color, whole.width());
     Some(value)
 }

@@ -13,28 +13,20 @@ pub(crate) fn with_keys(ctx: &Context, text: &str) -> String {
     if ctx.os().is_mac() { text.replace("Ctrl+", "Cmd+") } else { text.to_owned() }
 }
 
-/// Paints text on a box with the background's colour, moved into the view if it would leave it.
-pub(crate) fn boxed_text(
-    painter: &Painter,
-    at: Pos2,
-    anchor: Align2,
-    text: &str,
-    visuals: &Visuals,
-    color: Color32,
-    width: f32,
-) {
-    Labels { painter, visuals, taken: Vec::new() }.add(at, anchor, text, color, width);
-}
-
-/// Texts on boxes in the view of a painter; none covers another one or a taken area.
+/// Texts on boxes with the background's colour in the view of a painter; none covers another one or a taken area.
 pub(crate) struct Labels<'a> {
     pub painter: &'a Painter,
     pub visuals: &'a Visuals,
     pub taken: Vec<Rect>,
 }
 
-impl Labels<'_> {
-    /// Paints a text, in lines up to this width, at its place, or at the nearest free one beside what is there.
+impl<'a> Labels<'a> {
+    pub(crate) fn new(painter: &'a Painter, visuals: &'a Visuals) -> Self {
+        Self { painter, visuals, taken: Vec::new() }
+    }
+
+    /// Paints a text, in lines up to this width, at its place, moved into the view if it would leave it, or at the nearest
+    /// free one beside what is there.
     pub(crate) fn add(&mut self, at: Pos2, anchor: Align2, text: &str, color: Color32, width: f32) {
         /// Space between a text and the border of its box, and between a text and what is beside it, points.
         const BOX: f32 = 4.0;

@@ -58,7 +58,7 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, chosen: Option<Ordinate>, act
         let text = "Curve before the last change; the new one is being computed.";
         let at = area.center_top() + egui::vec2(0.0, 10.0);
         let color = ui.visuals().weak_text_color();
-        boxed_text(ui.painter(), at, Align2::CENTER_TOP, tr(text), ui.visuals(), color, area.width());
+        Labels::new(ui.painter(), ui.visuals()).add(at, Align2::CENTER_TOP, tr(text), color, area.width());
     }
 }
 

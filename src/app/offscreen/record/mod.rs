@@ -15,7 +15,7 @@ use crate::app::session::Session;
 use crate::app::session::document::built_in;
 use crate::app::shell::lab::Lab;
 use crate::app::shell::story;
-use crate::app::widgets::text::boxed_text;
+use crate::app::widgets::text::Labels;
 use crate::image::Picture;
 use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
@@ -268,7 +268,7 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
         let above_scale = screen.left_bottom() + egui::vec2(16.0, -48.0);
         if !text.is_empty() {
             let color = visuals.strong_text_color();
-            boxed_text(&painter, above_scale, egui::Align2::LEFT_BOTTOM, &text, visuals, color, screen.width());
+            Labels::new(&painter, visuals).add(above_scale, egui::Align2::LEFT_BOTTOM, &text, color, screen.width());
         }
     })
 }
