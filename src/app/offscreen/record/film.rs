@@ -99,7 +99,6 @@ impl Film {
         format: MovieFormat,
         delay: f64,
         samples: &[Picture],
-        size: [u32; 2],
     ) -> Result<Self, RecordError> {
         let failed = |reason: &dyn std::fmt::Display| failed(path, reason);
         let file = || Ok(BufWriter::new(File::create(path).map_err(|e| failed(&e))?));
@@ -107,11 +106,11 @@ impl Film {
             MovieFormat::Gif => {
                 let palette = GifPalette::of(samples);
                 // A side of a frame has at most 8192 pixels.
+                let size = samples.first().map_or([0; 2], |sample| sample.size);
                 let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
                 let mut encoder = gif::Encoder::new(file()?, width, height, palette.bytes()).map_err(|e| failed(&e))?;
                 encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e))?;
-                let (before, now) = (Vec::new(), Vec::new());
-                Some(Box::new(Gif { encoder, palette, before, now }))
+                Some(Box::new(Gif { encoder, palette, before: Vec::new(), now: Vec::new() }))
             }
             MovieFormat::Folder => {
                 std::fs::create_dir_all(path).map_err(|e| failed(&e))?;
@@ -253,7 +252,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cut.gif");
         let picture = |red| Picture { size: [4, 4], rgba: [red, 0, 0, 255].repeat(16) };
-        let film = || Film::create(&path, MovieFormat::Gif, MovieFormat::Gif.delay(25), &[picture(9)], [4, 4]).unwrap();
+        let film = || Film::create(&path, MovieFormat::Gif, MovieFormat::Gif.delay(25), &[picture(9)]).unwrap();
         let mut whole = film();
         (0..2).for_each(|red| whole.add(&picture(red), 0.0).unwrap());
         whole.finish().unwrap();

@@ -1,7 +1,5 @@
 //! Recordings of a lab without a window.
 
-use std::ops::ControlFlow;
-
 use thiserror::Error;
 
 use self::film::Film;
@@ -19,7 +17,7 @@ use crate::app::widgets::text::Labels;
 use crate::image::Picture;
 use crate::render::interpolated_field::InterpolatedField;
 use crate::render::{Gpu, RenderError};
-use crate::scene::registry;
+use crate::scene::{DynamicsSettings, registry};
 use crate::simulation::{PointValues, SimulationError};
 use crate::state::State;
 
@@ -152,11 +150,11 @@ pub fn record(
         false => SEARCH_RATE,
     };
     let delay = format.delay(options.fps.unwrap_or(rate));
-    let reel = Reel { between: delay * options.speed.unwrap_or(1.0), duration: scene.dynamics.duration };
+    let between = delay * options.speed.unwrap_or(1.0);
     let mut recorded = Recorded { pictures: 0, rate: 1.0 / delay, format, interrupted: true, status: Status::Running };
     let mut preview = None;
     if !is_story {
-        preview = Preview::new(&reel, &mut Session::new(source.clone(), scene.clone(), again()?), observe);
+        preview = Preview::new(between, &mut Session::new(source.clone(), scene.clone(), again()?), observe);
         if preview.is_none() {
             return Ok(recorded);
         }
@@ -175,14 +173,14 @@ pub fn record(
         film::clear(output, options.overwrite)?;
     }
     let now = sentence!("recording %{file}", file = output.display().to_string());
-    let mut film = Film::create(output, format, delay, &samples, options.size)?;
+    let mut film = Film::create(output, format, delay, &samples)?;
     for k in 0..pictures {
         let progress = Progress { fraction: k as f64 / pictures as f64, now: Some(&now) };
         let goes_on = match is_story {
             true => observe(progress).is_continue(),
             false => {
-                let observe = &mut |_| observe(progress);
-                reel.advance(k, &mut lab.desk.session, observe) == Reached::Picture
+                let observe = &mut |_| observe(progress).continue_value();
+                advance(&mut lab.desk.session, k, between, observe) == Some(true)
             }
         };
         // Even a cancelled recording has one frame, because a file without frames is invalid.
@@ -212,7 +210,7 @@ fn prepared(mut lab: Lab, options: &RecordOptions, preview: Option<&Preview>) ->
     lab.settings.language = options.look.language;
     if let Some(preview) = preview {
         lab.desk.view.layout.bars = false;
-        let camera = lab.fit([preview.low, preview.high], options.size.map(f64::from));
+        let camera = lab.fit(preview.area.into(), options.size.map(f64::from));
         lab.desk.viewport.camera.set_camera(camera);
         lab.desk.view.fixed_range = Some(preview.range);
     } else {
@@ -273,66 +271,39 @@ fn draw(canvas: &mut Canvas<'_>, lab: &mut Lab, k: u64) -> Result<Picture, Rende
     })
 }
 
-/// Times of the frames: a motion has frames at equal intervals of time, an iteration one frame per iteration.
-struct Reel {
-    /// Simulated time between two frames, s.
-    between: f64,
-    /// Duration of the motion, s.
-    duration: f64,
-}
-
-/// Result of advancing a simulation to a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reached {
-    /// The simulation has the state of the requested frame.
-    Picture,
-    /// The requested frame does not exist.
-    End,
-    /// The recording was cancelled on the way.
-    CalledOff,
-}
-
-impl Reel {
-    /// Advances a session, which records the trail, to frame `k`: to the last step that is not later. `observe` receives the
-    /// time.
-    fn advance(&self, k: u64, session: &mut Session, observe: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Reached {
-        let time = |session: &Session| session.simulation().state().time();
-        let is_running = |session: &Session| *session.simulation().status() == Status::Running;
-        if observe(time(session)).is_break() {
-            return Reached::CalledOff;
-        }
-        if !session.is_motion() {
-            if k > 0 {
-                if !is_running(session) {
-                    return Reached::End;
-                }
-                session.iterate();
-            }
-            return Reached::Picture;
-        }
-        let at = k as f64 * self.between;
-        if at > self.duration + NO_TIME * self.between {
-            return Reached::End;
-        }
-        let time_step = session.simulation().scene().dynamics.time_step;
-        while is_running(session) && time(session) + time_step <= at + NO_TIME * time_step {
+/// Advances a session, which records the trail, to frame `k`: frames of a motion are `between` s of simulated time apart, and
+/// show the last step that is not later; an iteration has one frame per iteration. `observe` receives the time. Returns
+/// `false` if there is no such frame, and `None` if the recording was cancelled on the way.
+fn advance(session: &mut Session, k: u64, between: f64, observe: &mut dyn FnMut(f64) -> Option<()>) -> Option<bool> {
+    let time = |session: &Session| session.simulation().state().time();
+    let is_running = |session: &Session| *session.simulation().status() == Status::Running;
+    observe(time(session))?;
+    if !session.is_motion() {
+        let exists = k == 0 || is_running(session);
+        if k > 0 && exists {
             session.iterate();
-            if observe(time(session)).is_break() {
-                return Reached::CalledOff;
-            }
         }
-        // A motion that has been stopped has no further frames.
-        let given_up = matches!(session.simulation().status(), Status::Stopped(_)) && time(session) + time_step <= at;
-        if given_up { Reached::End } else { Reached::Picture }
+        return Some(exists);
     }
+    let DynamicsSettings { duration, time_step, .. } = session.simulation().scene().dynamics;
+    let at = k as f64 * between;
+    if at > duration + NO_TIME * between {
+        return Some(false);
+    }
+    while is_running(session) && time(session) + time_step <= at + NO_TIME * time_step {
+        session.iterate();
+        observe(time(session))?;
+    }
+    // A motion that has been stopped has no further frames.
+    let given_up = matches!(session.simulation().status(), Status::Stopped(_)) && time(session) + time_step <= at;
+    Some(!given_up)
 }
 
 /// Ranges of a recording, found before its frames are drawn.
 struct Preview {
     pictures: u64,
     /// Box that contains the body in all frames, m.
-    low: Vector2<f64>,
-    high: Vector2<f64>,
+    area: (Vector2<f64>, Vector2<f64>),
     /// Range of the colour map.
     range: [f64; 2],
     /// Evenly spaced samples of the states.
@@ -341,36 +312,29 @@ struct Preview {
 
 impl Preview {
     /// Simulates the whole recording; `None` if it was cancelled.
-    fn new(reel: &Reel, session: &mut Session, observe: Observer<'_>) -> Option<Self> {
+    fn new(between: f64, session: &mut Session, observe: Observer<'_>) -> Option<Self> {
         let now = sentence!("preparing the recording");
-        let moves = session.is_motion();
-        let (low, high) = session.simulation().mesh().bounds();
-        let largest = LARGEST_VIEW * (high - low).norm();
-        let mut preview = Self { pictures: 0, low, high, range: [0.0, 1.0], samples: Vec::new() };
+        let (moves, duration) = (session.is_motion(), session.scene().dynamics.duration);
+        let area = session.simulation().mesh().bounds();
+        let largest = LARGEST_VIEW * (area.1 - area.0).norm();
+        let mut preview = Self { pictures: 0, area, range: [0.0, 1.0], samples: Vec::new() };
         let (mut field, mut largest_value) = (InterpolatedField::default(), 0.0_f64);
         let mut largest_of = |simulation: &Simulation| {
             field.update(simulation, Field::default(), PointValues::Recovered, &[]);
             field.largest(simulation.system().mesh())
         };
-        let mut range = Vec::new();
+        let mut areas = Vec::new();
         let mut stride = 1;
-        loop {
-            let fraction = |time| if moves { time / reel.duration } else { 0.0 };
-            let observe = &mut |time| observe(Progress { fraction: fraction(time), now: Some(&now) });
-            match reel.advance(preview.pictures, session, observe) {
-                Reached::CalledOff => return None,
-                Reached::End => break,
-                Reached::Picture => {}
-            }
+        let fraction = |time| if moves { time / duration } else { 0.0 };
+        let observe = &mut |time| observe(Progress { fraction: fraction(time), now: Some(&now) }).continue_value();
+        while advance(session, preview.pictures, between, observe)? {
             let simulation = session.simulation();
-            let (low, high) = bounds(simulation);
-            if moves {
+            let area = bounds(simulation);
+            if !moves {
+                areas.push(area);
+            } else if preview.include(area, largest) {
                 // Unstable states extend neither the view nor the colour range.
-                if preview.include(low, high, largest) {
-                    largest_value = largest_value.max(largest_of(simulation));
-                }
-            } else {
-                range.push((low, high));
+                largest_value = largest_value.max(largest_of(simulation));
             }
             if preview.pictures.is_multiple_of(stride) {
                 preview.samples.push(simulation.state().clone());
@@ -383,11 +347,10 @@ impl Preview {
             preview.pictures += 1;
         }
         if !moves {
-            let (low, high) = bounds(session.simulation());
-            preview.include(low, high, f64::INFINITY);
-            let largest = LARGEST_WAY * (preview.high - preview.low).norm();
-            for (low, high) in range {
-                preview.include(low, high, largest);
+            preview.include(bounds(session.simulation()), f64::INFINITY);
+            let largest = LARGEST_WAY * (preview.area.1 - preview.area.0).norm();
+            for area in areas {
+                preview.include(area, largest);
             }
             largest_value = largest_of(session.simulation());
         }
@@ -397,12 +360,12 @@ impl Preview {
 
     /// Extends the box to contain another, unless it would become larger than `largest`; returns `true` if it was
     /// extended.
-    fn include(&mut self, low: Vector2<f64>, high: Vector2<f64>, largest: f64) -> bool {
-        let (low, high) = (self.low.inf(&low), self.high.sup(&high));
+    fn include(&mut self, (low, high): (Vector2<f64>, Vector2<f64>), largest: f64) -> bool {
+        let (low, high) = (self.area.0.inf(&low), self.area.1.sup(&high));
         // `false` also for a box that is not finite.
         let fits = (high - low).norm() <= largest;
         if fits {
-            (self.low, self.high) = (low, high);
+            self.area = (low, high);
         }
         fits
     }
@@ -417,6 +380,8 @@ fn bounds(simulation: &Simulation) -> (Vector2<f64>, Vector2<f64>) {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
 
     fn session(id: &str, set: &[&str]) -> Session {
@@ -426,19 +391,14 @@ mod tests {
         Session::new(source, scene, simulation)
     }
 
-    fn reel(session: &Session, between: f64) -> Reel {
-        Reel { between, duration: session.scene().dynamics.duration }
-    }
-
     /// Advances through all frames, calls `each` for every frame, and returns their number.
-    fn run(reel: &Reel, mut session: Session, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
-        for k in 0.. {
-            match reel.advance(k, &mut session, &mut |_| ControlFlow::Continue(())) {
-                Reached::Picture => each(k, session.simulation()),
-                _ => return k,
-            }
+    fn run(between: f64, mut session: Session, each: &mut dyn FnMut(u64, &Simulation)) -> u64 {
+        let mut k = 0;
+        while advance(&mut session, k, between, &mut |_| Some(())) == Some(true) {
+            each(k, session.simulation());
+            k += 1;
         }
-        0
+        k
     }
 
     #[test]
@@ -446,8 +406,7 @@ mod tests {
         // Steps that are shorter than the time between frames, equal to it, and longer.
         for (step, between, pictures) in [(0.01, 0.04, 26), (0.01, 0.03, 34), (0.04, 0.04, 26), (0.1, 0.04, 26)] {
             let swing = session("swing", &[&format!("dynamics.time_step={step}"), "dynamics.duration=1"]);
-            let reel = reel(&swing, between);
-            let seen = run(&reel, swing, &mut |k, simulation| {
+            let seen = run(between, swing, &mut |k, simulation| {
                 let (at, time) = (k as f64 * between, simulation.state().time());
                 assert!(time <= at + 1e-9 && time > at - step + 1e-9, "picture {k} at {at} s shows {time} s");
             });
@@ -459,15 +418,14 @@ mod tests {
     fn the_preview_spans_every_picture() {
         for id in ["swing", "jelly", "spin", "elastica"] {
             let again = || session(id, if id == "elastica" { &[] } else { &["dynamics.duration=1.5"] });
-            let reel = reel(&again(), 0.04);
-            let preview = Preview::new(&reel, &mut again(), &|_| ControlFlow::Continue(())).unwrap();
+            let preview = Preview::new(0.04, &mut again(), &|_| ControlFlow::Continue(())).unwrap();
             assert!(preview.samples.len() <= SAMPLES && preview.samples.len() >= SAMPLES.min(3), "{id}");
             let moves = again().is_motion();
-            let seen = run(&reel, again(), &mut |k, simulation| {
+            let seen = run(0.04, again(), &mut |k, simulation| {
                 let (low, high) = bounds(simulation);
                 // Iterations before the equilibrium may leave the frame; the equilibrium is inside it.
                 let shown = moves || *simulation.status() == Status::Converged;
-                assert!(!shown || low >= preview.low && high <= preview.high, "{id}, picture {k}");
+                assert!(!shown || low >= preview.area.0 && high <= preview.area.1, "{id}, picture {k}");
                 let field = InterpolatedField::new(simulation, Field::default(), PointValues::Recovered);
                 let largest = field.largest(simulation.system().mesh());
                 // The colour range of a body at rest covers its last state only.
@@ -475,7 +433,7 @@ mod tests {
             });
             assert_eq!(seen, preview.pictures, "{id}");
         }
-        let cancelled = Preview::new(&Reel { between: 0.04, duration: 1.0 }, &mut session("swing", &[]), &|progress| {
+        let cancelled = Preview::new(0.04, &mut session("swing", &["dynamics.duration=1"]), &|progress| {
             if progress.fraction > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         assert!(cancelled.is_none());
@@ -489,8 +447,8 @@ mod tests {
             let (low, high) = swing.simulation().mesh().bounds();
             (high - low).norm()
         };
-        let preview = Preview::new(&reel(&swing, 0.001), &mut swing, &|_| ControlFlow::Continue(())).unwrap();
-        assert!((preview.high - preview.low).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
+        let preview = Preview::new(0.001, &mut swing, &|_| ControlFlow::Continue(())).unwrap();
+        assert!((preview.area.1 - preview.area.0).norm() <= LARGEST_VIEW * size && preview.range[1].is_finite());
         assert!(preview.pictures > 1);
     }
 }
