@@ -48,7 +48,7 @@ fn print_stages(mut frame: impl FnMut() -> FrameTimes) {
     };
     println!(
         "  a frame {}: layout {}, tessellation {}, uploads and commands {}, drawing {}",
-        median(FrameTimes::total),
+        median(|t| t.layout + t.tessellate + t.record + t.draw),
         median(|t| t.layout),
         median(|t| t.tessellate),
         median(|t| t.record),

@@ -94,14 +94,6 @@ pub struct FrameTimes {
     pub draw: Duration,
 }
 
-impl FrameTimes {
-    /// Returns the total time of the frame.
-    #[must_use]
-    pub fn total(&self) -> Duration {
-        self.layout + self.tessellate + self.record + self.draw
-    }
-}
-
 /// Resources for drawing images of one size one after the other.
 pub struct Canvas<'a> {
     gpu: &'a Gpu,
@@ -161,11 +153,10 @@ impl<'a> Canvas<'a> {
         let Self { gpu, ctx, stage, target, screen, passes } = self;
         let ScreenDescriptor { size_in_pixels: size, pixels_per_point } = *screen;
         let points = egui::vec2(size[0] as f32, size[1] as f32) / pixels_per_point;
-        let mut unused = Vec::new();
-        let mut times = FrameTimes::default();
         let mut stage_start = Instant::now();
         let mut lap = || std::mem::replace(&mut stage_start, Instant::now()).elapsed();
-        let primitives = loop {
+        let mut output = egui::FullOutput::default();
+        for _ in 0..if *passes == 0 { FIRST_PASSES } else { 1 } {
             let mut input = egui::RawInput {
                 screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, points)),
                 time: Some(f64::from(*passes)),
@@ -174,25 +165,18 @@ impl<'a> Canvas<'a> {
                 ..Default::default()
             };
             input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
-            let mut output = ctx.run_ui(input, |ui| {
+            output.append(ctx.run_ui(input, |ui| {
                 lab.ui(ui);
                 over(ui.ctx());
-            });
-            times.layout += lap();
-            stage.set_textures(gpu, &mut output.textures_delta);
-            unused.push(output.textures_delta);
+            }));
             *passes = passes.saturating_add(1);
-            times.record += lap();
-            if *passes >= FIRST_PASSES {
-                break ctx.tessellate(output.shapes, pixels_per_point);
-            }
-        };
-        times.tessellate = lap();
-        stage.paint(gpu, target, screen, &primitives, &lab.views(pixels_per_point));
-        for mut textures in unused {
-            stage.free_textures(&mut textures);
         }
-        times.record += lap();
-        times
+        let layout = lap();
+        let primitives = ctx.tessellate(output.shapes, pixels_per_point);
+        let tessellate = lap();
+        stage.set_textures(gpu, &mut output.textures_delta);
+        stage.paint(gpu, target, screen, &primitives, &lab.views(pixels_per_point));
+        stage.free_textures(&mut output.textures_delta);
+        FrameTimes { layout, tessellate, record: lap(), draw: Duration::ZERO }
     }
 }

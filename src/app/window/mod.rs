@@ -261,7 +261,12 @@ impl App {
         let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
         let delay = delay.min(self.keep_unsaved());
         self.keep_settings();
-        self.schedule(if self.later.is_empty() { delay } else { Duration::ZERO });
+        let is_due = delay.is_zero() || !self.later.is_empty();
+        // A delay that overflows means never.
+        self.wake = Instant::now().checked_add(delay).filter(|_| !is_due);
+        if is_due {
+            self.request_redraw();
+        }
         for request in requests {
             match request {
                 Request::Screenshot => self.say_saved(screenshot.take()),
@@ -365,16 +370,6 @@ impl App {
     fn warn(&mut self, message: String) {
         if self.lab.warn(message) {
             self.request_redraw();
-        }
-    }
-
-    fn schedule(&mut self, delay: Duration) {
-        self.wake = None;
-        if delay.is_zero() {
-            self.request_redraw();
-        } else {
-            // A delay that overflows means never.
-            self.wake = Instant::now().checked_add(delay);
         }
     }
 
