@@ -61,13 +61,6 @@ pub(crate) fn vector(magnitude: f64, degrees: f64) -> [f64; 2] {
     [magnitude * c, magnitude * s].map(|component| rounded(component, 12))
 }
 
-/// Returns the smallest power of ten that is not below `value`, limited to a range without overflow.
-fn power_of_ten_above(value: f64) -> f64 {
-    /// A value above a power of ten by rounding only counts as that power.
-    const ROUNDING: f64 = 1e-9;
-    10f64.powf((value.clamp(1e-6, 1e14).log10() - ROUNDING).ceil())
-}
-
 /// Returns the scale of the arrows of a scene that opens with forces up to `usual`, N, in a view of size `view`,
 /// points.
 pub(crate) fn scale(usual: f64, view: Vec2) -> LoadScale {
@@ -109,7 +102,11 @@ impl LoadRanges {
         const TIMES: f64 = 1e3;
         /// Smallest ratio of the largest load of a slider to the load that the scene opens with.
         const MIN_SPAN: f64 = 4.0;
-        let range = |usual: f64, largest| [usual, power_of_ten_above(largest).max(MIN_SPAN * usual)];
+        /// A load above a power of ten by rounding only counts as that power.
+        const ROUNDING: f64 = 1e-9;
+        // The exponent is limited to a range without overflow.
+        let power_above = |load: f64| 10f64.powf((load.clamp(1e-6, 1e14).log10() - ROUNDING).ceil());
+        let range = |usual: f64, largest| [usual, power_above(largest).max(MIN_SPAN * usual)];
         let [length, height] = system.strip();
         let axial = material.young * material.thickness * height;
         // 3EI/L² and 2πEI/L with I = t h³/12.

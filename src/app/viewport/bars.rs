@@ -52,17 +52,12 @@ pub(crate) fn magnified(factor: f64) -> String {
 }
 
 /// Space between the left side of the view and the scale bar, points.
-const SCALE_BAR_LEFT: f32 = 18.0;
+pub(super) const SCALE_BAR_LEFT: f32 = 18.0;
 
 /// Returns the length of the scale bar in m and in points.
-fn scale(camera: &Camera) -> (f64, f32) {
+pub(super) fn scale(camera: &Camera) -> (f64, f32) {
     let length = round_down(110.0 / camera.scale);
     (length, (length * camera.scale) as f32)
-}
-
-/// Returns the width that the scale bar takes on the left of the view, points.
-pub(crate) fn scale_bar_width(camera: &Camera) -> f32 {
-    SCALE_BAR_LEFT + scale(camera).1
 }
 
 /// Paints a scale bar of a round length.

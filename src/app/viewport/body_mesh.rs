@@ -7,7 +7,6 @@ use crate::render::Frame;
 use crate::render::interpolated_field::{Components, InterpolatedField};
 use crate::study::ProbeReference;
 
-/// Displayed mesh of a body in its current state.
 #[derive(Debug, Default)]
 pub(crate) struct BodyMesh {
     /// Positions of the nodes, m.
@@ -18,7 +17,6 @@ pub(crate) struct BodyMesh {
     pub magnification: f64,
     /// Revision number of points and values.
     pub stamp: u64,
-    /// Displayed field.
     pub field: InterpolatedField,
     /// Reference of the first probe in the solution that the field is the distance from; `None` for other fields.
     reference: Option<ProbeReference>,
@@ -91,9 +89,8 @@ impl BodyMesh {
         magnification: f64,
         played: Option<f64>,
     ) {
-        let nodes = simulation.system().mesh().nodes();
-        let places = nodes.iter().zip(simulation.displacement()).map(|(x, u)| x + u * magnification);
         let (mesh, values) = (simulation.system().mesh(), view.point_values());
+        let places = mesh.nodes().iter().zip(simulation.displacement()).map(|(x, u)| x + u * magnification);
         // Computing the values of a large body is expensive, and the state has usually not changed since the last
         // frame.
         let reference = reference.filter(|_| view.field == Field::ReferenceDistance);
@@ -142,7 +139,6 @@ impl BodyMesh {
         self.components.iter().flatten().any(|components| self.field.value(*components).is_some())
     }
 
-    /// Returns the input of the body's render pass.
     pub(crate) fn frame(&self, wireframe: bool) -> Frame<'_> {
         let geometry = &self.geometry;
         let opaque = |color: Color32| [color.r(), color.g(), color.b()];

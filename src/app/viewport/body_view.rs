@@ -8,7 +8,6 @@ use crate::app::viewport::probe;
 use crate::app::viewport::projection::{DrawnBody, Projection};
 use crate::render::Viewport;
 
-/// View of a body in a part of the window.
 #[derive(Debug)]
 pub(crate) struct BodyView {
     /// Area in the window, points; empty before the first frame.

@@ -33,7 +33,6 @@ pub(crate) fn grow_to_linear(whole: Box2, linear: impl Iterator<Item = Vector2<f
 /// Movement of the camera by the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CameraMove {
-    /// Movement to another camera.
     To(Camera),
     /// Return to the camera that fits the whole body.
     Fit,

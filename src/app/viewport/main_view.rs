@@ -19,7 +19,6 @@ use crate::state::largest;
 const FIT_MARGINS: Margins = Margins { sides: 76.0, top: 84.0, bottom: 92.0 };
 const FIT_SHARE: f64 = 0.16;
 
-/// Content of the view.
 #[derive(Clone, Copy)]
 pub(crate) struct Content<'a> {
     pub session: &'a Session,
@@ -84,7 +83,6 @@ struct Crossing {
     stamp: u64,
 }
 
-/// View of the body of Explore and Learn.
 #[derive(Debug)]
 pub(crate) struct MainView {
     pub view: BodyView,
@@ -94,7 +92,6 @@ pub(crate) struct MainView {
     pub eases: bool,
     /// Pinned material point, whose values are shown.
     pub probe: Option<MaterialPoint>,
-    /// Choices of the user on the cards of points.
     card_choice: CardChoice,
     /// Rest position of the point whose menu was opened, m.
     menu: Option<Vector2<f64>>,
@@ -143,7 +140,6 @@ impl MainView {
         self.view.projection(&self.camera)
     }
 
-    /// Processes the pointer.
     pub(crate) fn interact(&mut self, ui: &mut Ui, content: &Content<'_>) -> (Response, Interaction) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let arrows = self.arrows(content);

@@ -120,7 +120,7 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
     if let Some(linear) = overlay.ghost {
-        draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.method(MethodKind::Linear)));
+        draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.of_id(MethodKind::Linear.id())));
     }
     if !overlay.apart {
         draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
@@ -535,7 +535,7 @@ fn key(painter: &Painter, overlay: &Overlay<'_>, session: &Session, palette: &Pa
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
     if let Some(solution) = session.linear().filter(|_| overlay.ghost.is_some()) {
         let text = values(MethodKind::Linear.id(), [linear, None], solution);
-        lines.push((palette.method(MethodKind::Linear), Some(LegendMark::Line), text));
+        lines.push((palette.of_id(MethodKind::Linear.id()), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
         // A body in place of a search has another load.

@@ -78,7 +78,6 @@ pub(crate) struct Pointer {
     held: Held,
     /// Target under a pointer that is not pressed.
     over: Held,
-    /// Position of the pointer.
     at: Option<Pos2>,
     /// `true` if the wheel was last turned over the view. Scrolling that began elsewhere does not zoom it.
     scrolls: bool,
@@ -124,7 +123,6 @@ pub(crate) struct HitTargets<'a> {
     pub camera: &'a CameraController,
     pub body: &'a BodyMesh,
     pub interactivity: Interactivity,
-    /// Arrows of the loads.
     pub arrows: &'a [LoadArrow],
     /// Bases of the objects that can be moved.
     pub bases: &'a [Base],
@@ -189,7 +187,6 @@ impl Pointer {
         matches!(self.held, Held::Tip(grip) if grip.drag().is_some())
     }
 
-    /// Processes the pointer over the view.
     pub(crate) fn process(&mut self, ui: &Ui, targets: &HitTargets<'_>) -> Interaction {
         let response = targets.response;
         let released = |event: &Event| match event {

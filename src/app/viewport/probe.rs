@@ -15,7 +15,6 @@ pub(super) fn metres(v: Vector2<f64>) -> String {
     engineering_pair([v.x, v.y].map(three_digits), "m")
 }
 
-/// Formats a matrix in two rows.
 fn matrix_rows(m: &Matrix2<f64>) -> String {
     // Adding 0 removes the sign of -0.
     let number = |v: f64| format!("{:>8}", format!("{:.4}", (1e4 * v).round() / 1e4 + 0.0));

@@ -3,7 +3,7 @@
 use egui::{CursorIcon, EventFilter};
 
 use crate::app::interface::*;
-use crate::app::viewport::bars::{LEGEND_WIDTH, has_legend, scale_bar_width};
+use crate::app::viewport::bars::{LEGEND_WIDTH, SCALE_BAR_LEFT, has_legend, scale};
 
 /// Shortest line, points; a view that has no room for it has none.
 const SHORTEST: f32 = 80.0;
@@ -13,7 +13,7 @@ const REACH: f32 = 10.0;
 /// Shows the line of a motion with a recorded past; `now` is the displayed simulated time, s.
 pub(crate) fn show(ui: &Ui, view: Rect, camera: &Camera, (playback, now): (&Playback, f64), actions: &mut Vec<Action>) {
     // Between the scale bar and the colour bar, if that is at the bottom.
-    let left = view.left() + scale_bar_width(camera) + 24.0;
+    let left = view.left() + SCALE_BAR_LEFT + scale(camera).1 + 24.0;
     let right = view.right() - if has_legend(view.size()) { LEGEND_WIDTH } else { 18.0 };
     let line = Rect::from_min_max(pos2(left, view.bottom() - 20.0), pos2(right, view.bottom() - 20.0));
     let Some([first, last]) = playback.span().filter(|_| line.width() >= SHORTEST) else { return };

@@ -5,10 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use egui::text_edit::TextEditState;
-use egui::{
-    Align, DragValue, Id, Key, Layout, PointerButton, Rect, Response, Slider, SliderClamping, Stroke, StrokeKind, Ui,
-    UiBuilder,
-};
+use egui::{DragValue, Id, Key, Layout, PointerButton, Rect, Response, Slider, SliderClamping, Stroke, Ui};
 
 use crate::app::prelude::*;
 use crate::app::widgets::load_scale::LoadScale;
@@ -27,7 +24,6 @@ pub(crate) struct NumberField {
     limit: Limit,
     /// Range of the slider. Typed values may lie outside it, but within the limit.
     slider: RangeInclusive<f64>,
-    /// Relation between values and positions on the slider.
     scale: SliderScale,
     /// `true` if only whole numbers are accepted.
     whole: bool,
@@ -96,7 +92,7 @@ impl NumberField {
         let label = ui
             .horizontal(|ui| {
                 let label = ui.label(tr(self.label)).on_hover_text(tr(self.tooltip));
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
                     let mut typed = value;
                     let drag = DragValue::new(&mut typed)
                         .speed(if self.whole { 0.1 } else { 0.005 * value.abs().max(*self.slider.end() * 1e-3) })
@@ -152,7 +148,7 @@ impl NumberField {
         if response.has_focus() {
             // The handle alone shows the focus too faintly.
             let accent = Palette::new(ui.visuals()).accent;
-            ui.painter().rect_stroke(slider.expand(2.0), 4.0, Stroke::new(1.5, accent), StrokeKind::Outside);
+            ui.painter().rect_stroke(slider.expand(2.0), 4.0, Stroke::new(1.5, accent), egui::StrokeKind::Outside);
         }
         is_reset |= is_reset_by(ui, &response);
         quiet_tip(response, &tip);
@@ -316,7 +312,7 @@ fn show_over_slider(ui: &mut Ui, messages: &Messages, label: &str, slider: Rect)
     const ABOVE: f32 = 5.0;
     const BELOW: f32 = 7.0;
     let place = Rect::from_x_y_ranges(slider.x_range(), slider.top() - ABOVE..=slider.bottom() + BELOW);
-    let mut over = ui.new_child(UiBuilder::new().max_rect(place));
+    let mut over = ui.new_child(egui::UiBuilder::new().max_rect(place));
     over.painter().rect_filled(place, 0.0, over.visuals().panel_fill);
     show_message(&mut over, messages, label);
 }

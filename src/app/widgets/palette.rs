@@ -88,13 +88,9 @@ impl Palette {
         if visuals.dark_mode { DARK } else { LIGHT }
     }
 
-    /// Returns the colour of a method, which is the same for body, legend and plots.
-    pub(crate) fn method(&self, method: MethodKind) -> Color32 {
-        self.ink(Ink::Solution(method.id()))
-    }
-
-    pub(crate) fn integrator(&self, integrator: IntegratorKind) -> Color32 {
-        self.ink(Ink::Solution(integrator.id()))
+    /// Returns the colour of a method or an integrator by its id, which is the same for body, legend and plots.
+    pub(crate) fn of_id(&self, id: &'static str) -> Color32 {
+        self.ink(Ink::Solution(id))
     }
 
     /// Returns the colour of a line or a text of a chart.
@@ -116,8 +112,8 @@ impl Palette {
     /// Returns the colour of a scene's method, or of its integrator for a motion.
     pub(crate) fn solution(&self, scene: &Scene) -> Color32 {
         match scene.analysis {
-            Analysis::Static => self.method(scene.solver.method),
-            Analysis::Dynamic => self.integrator(scene.dynamics.integrator),
+            Analysis::Static => self.of_id(scene.solver.method.id()),
+            Analysis::Dynamic => self.of_id(scene.dynamics.integrator.id()),
         }
     }
 
@@ -277,8 +273,8 @@ mod tests {
                     assert!(ratio >= 3.0, "{field:?} at {i}/255 on {:?}: {ratio}", p.canvas);
                 }
             }
-            let methods = METHODS.iter().map(|m| p.method(m.kind));
-            let integrators = INTEGRATORS.iter().map(|i| p.integrator(i.kind));
+            let methods = METHODS.iter().map(|m| p.of_id(m.id));
+            let integrators = INTEGRATORS.iter().map(|i| p.of_id(i.id));
             let lines = [p.exact, p.rest, p.support, p.absent];
             for color in methods.chain(integrators).chain(lines).chain(p.energies()) {
                 assert!(contrast(color, p.canvas) >= 3.0, "{color:?}: {}", contrast(color, p.canvas));
