@@ -174,7 +174,6 @@ impl Session {
         self.changed.document = true;
         self.running = true;
         self.playback = Playback::default();
-        self.facts.curve.clear();
         self.facts.live = Follower::default();
         self.frame.is_slow = false;
     }

@@ -79,24 +79,11 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
     Ok(path.map(|path| Curve::Path(Box::new((path, own())))))
 }
 
-/// Results that are computed only while they are shown.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ShownFacts<'a> {
-    /// `true` if the load–displacement curve is shown.
-    pub curve: bool,
-    /// `true` if ρ at the equilibrium is shown.
-    pub rho: bool,
-    /// Scene whose limits are shown.
-    pub limits_of: Option<&'a Scene>,
-}
-
 /// Results of the current scene; each is `None` until it has been computed.
 #[derive(Debug, Default)]
 pub(crate) struct Facts {
     pub reference: Keyed<ReferenceFact>,
-    pub curve: Keyed<CurveFact>,
     pub path: Keyed<PathFact>,
-    pub limits: Keyed<LimitsFact>,
     pub rho: Keyed<RhoFact>,
     pub time: Keyed<TimeFact>,
     /// Certification of a copy of the displayed body.
@@ -110,21 +97,19 @@ impl Facts {
     /// Cancels the computations for any other scene.
     pub(super) fn turn_to(&mut self, scene: &Scene) {
         self.reference.turn_to(scene);
-        self.curve.turn_to(scene);
         self.path.turn_to(scene);
         self.rho.turn_to(scene);
         self.time.turn_to(scene);
     }
 
-    /// Requests the results of a scene at rest, or computes them and `waits`; returns `true` while one of them is pending.
-    pub(super) fn request_at_rest(&mut self, scene: &Scene, shown: ShownFacts<'_>, waits: bool) -> bool {
+    /// Requests the results of a scene at rest, with ρ if it is shown, or computes them and `waits`; returns `true` while one
+    /// of them is pending, or another one (`is_busy`).
+    pub(super) fn request_at_rest(&mut self, scene: &Scene, shows_rho: bool, is_busy: bool, waits: bool) -> bool {
         let reference = self.reference.obtain(scene, waits);
         let path = self.path.obtain(scene, waits);
-        let curve = shown.curve && self.curve.obtain(scene, waits);
-        let rho = shown.rho && self.rho.obtain(scene, waits);
-        let limits = shown.limits_of.is_some_and(|scene| self.limits.obtain(scene, waits));
+        let rho = shows_rho && self.rho.obtain(scene, waits);
         // Solves are timed after the other computations, which would slow them down.
-        reference || path || curve || rho || limits || self.time.obtain(scene, waits)
+        reference || path || rho || is_busy || self.time.obtain(scene, waits)
     }
 }
 
@@ -321,13 +306,11 @@ impl Session {
         self.facts.certifying.is_some()
     }
 
-    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. During a
-    /// press only those that a frame has time for are requested, and the reference that follows the load.
-    pub(crate) fn request_facts(&mut self, shown: ShownFacts<'_>, is_pressed: bool) -> bool {
-        if self.is_motion() {
-            return shown.limits_of.is_some_and(|scene| self.facts.limits.request(scene));
-        }
-        if self.iterates() || self.is_working() {
+    /// Requests the results of the scene once the body is at rest; returns `true` while one of them is pending. Its time is
+    /// measured while nothing else is computed (`is_busy`). During a press only the results that a frame has time for are
+    /// requested, and the reference that follows the load.
+    pub(crate) fn request_facts(&mut self, shows_rho: bool, is_busy: bool, is_pressed: bool) -> bool {
+        if self.is_motion() || self.iterates() || self.is_working() {
             return false;
         }
         // A background solve has certified its result.
@@ -337,8 +320,8 @@ impl Session {
             self.time_in_frame();
             return follows || certifies;
         }
-        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
-        self.facts.request_at_rest(&self.present.scene, shown, false) || follows || certifies
+        let shows_rho = shows_rho || self.lacks_rho();
+        self.facts.request_at_rest(&self.present.scene, shows_rho, is_busy, false) || follows || certifies
     }
 
     /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
@@ -378,15 +361,6 @@ impl Session {
             timed.solve();
             let solve = SolveFromRest::of(&timed);
             self.facts.timed = Some((timed, solve));
-        }
-    }
-
-    /// Cancels the computation of limits, unless it is for this scene.
-    pub(crate) fn turn_limits_to(&mut self, scene: Option<&Scene>) {
-        match scene {
-            Some(scene) => self.facts.limits.turn_to(scene),
-            None if self.facts.limits.progress().is_some() => self.facts.limits.clear(),
-            None => {}
         }
     }
 

@@ -21,7 +21,7 @@ use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
 pub(crate) use crate::app::session::edit::{Changed, Edit, object_name};
-use crate::app::session::facts::{Facts, Live, ShownFacts};
+use crate::app::session::facts::{Facts, Live};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{UndoHistory, Version};
@@ -391,8 +391,9 @@ impl Session {
         self.frame.is_from_rest = true;
     }
 
-    /// Iterates until the status is final, or to the end of the motion's duration, and computes the results.
-    pub(crate) fn solve(&mut self, shown: ShownFacts<'_>) {
+    /// Iterates until the status is final, or to the end of the motion's duration, and computes the results, with ρ if it is
+    /// shown.
+    pub(crate) fn solve(&mut self, shows_rho: bool) {
         self.poll();
         while self.take_update(true) {
             self.poll();
@@ -401,11 +402,11 @@ impl Session {
             self.iterate();
         }
         if self.is_motion() {
-            return shown.limits_of.into_iter().for_each(|scene| self.facts.limits.wait(scene));
+            return;
         }
         self.certify();
-        let shown = ShownFacts { rho: shown.rho || self.lacks_rho(), ..shown };
-        self.facts.request_at_rest(&self.present.scene, shown, true);
+        let shows_rho = shows_rho || self.lacks_rho();
+        self.facts.request_at_rest(&self.present.scene, shows_rho, false, true);
     }
 
     /// Solves the scene from rest and certifies the result, or computes ρ at the equilibrium that the warped iteration does

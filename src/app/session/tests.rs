@@ -3,6 +3,8 @@
 use std::fs;
 
 use super::*;
+use crate::app::session::facts::CurveFact;
+use crate::app::task::keyed::Keyed;
 
 fn cantilever(force: f64) -> Scene {
     Scene::beam(4.0, 1.0).with_cells(8, 2).clamp("left").force("right", [0.0, force]).probe("tip", "right")
@@ -49,27 +51,27 @@ fn wait(session: &mut Session) {
 #[test]
 fn edits_change_the_solution_and_are_undone_and_redone() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let first = tip(&session);
     let changed = session.apply(with_force(&session, -200.0)).unwrap();
     assert_eq!(changed, Changed { scene: true, ..Changed::default() });
     assert!(session.is_edited() && session.iterates());
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let second = tip(&session);
     assert!(second < 1.5 * first, "twice the force: {first} and {second} m");
     session.apply(Edit::Undo).unwrap();
-    session.solve(ShownFacts::default());
+    session.solve(false);
     assert!((tip(&session) - first).abs() < 1e-6 * first.abs() && !session.is_edited());
     assert!(!session.undo.can_undo() && session.undo.can_redo());
     session.apply(Edit::Redo).unwrap();
-    session.solve(ShownFacts::default());
+    session.solve(false);
     assert!((tip(&session) - second).abs() < 1e-6 * second.abs());
 }
 
 #[test]
 fn a_refused_edit_leaves_the_session_unchanged() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let (scene, first) = (session.scene().clone(), tip(&session));
     session.changed = Changed::default();
     assert!(session.apply(edited(&session, "Poisson ν", |scene| scene.material.poisson = 0.9)).is_err());
@@ -82,7 +84,7 @@ fn a_refused_edit_leaves_the_session_unchanged() {
 #[test]
 fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let first = tip(&session);
     session.most_unknowns = 0;
     session.apply(with_force(&session, -200.0)).unwrap();
@@ -111,7 +113,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
 #[test]
 fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let first = session.scene().clone();
     session.most_unknowns = 0;
     for cells in [[16, 4], [8, 2]] {
@@ -136,7 +138,7 @@ fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
 fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     session.most_unknowns = 0;
     let first = session.scene().clone();
     let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
@@ -170,7 +172,7 @@ fn an_exploded_motion_starts_again_with_other_settings() {
 #[test]
 fn a_released_body_has_the_numbers_of_its_equilibrium() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let numbers = |session: &Session| {
         let simulation = session.simulation();
         let certificate = simulation.equilibrium().unwrap().certificate();
@@ -190,42 +192,40 @@ fn a_released_body_has_the_numbers_of_its_equilibrium() {
     assert_eq!(numbers(&session), before);
     // So has an iterate that has been accepted.
     session.apply(edited(&session, "Accept", |scene| scene.solver.accept_after = 2)).unwrap();
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let accepted = numbers(&session);
     session.grab(Grab { start: Some(point), ..Grab::default() });
     (0..10).for_each(|_| session.iterate());
     session.grab(Grab { release: true, ..Grab::default() });
     assert!(numbers(&session) == accepted && !session.iterates(), "{:?}", accepted.0);
     session.apply(Edit::Undo).unwrap();
-    session.solve(ShownFacts::default());
+    session.solve(false);
     // A load that has changed meanwhile counts.
     session.grab(Grab { start: Some(point), target: Some(Vector2::new(3.0, 2.0)), release: false });
     session.apply(with_force(&session, -200.0)).unwrap();
     session.grab(Grab { release: true, ..Grab::default() });
-    session.solve(ShownFacts::default());
+    session.solve(false);
     assert!(tip(&session) < 1.5 * before.3.iter().map(|u| u.y).fold(0.0, f64::min), "{}", tip(&session));
 }
 
 #[test]
 fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     let mut session = session(cantilever(-100.0));
-    let shown = ShownFacts { curve: true, ..ShownFacts::default() };
-    assert!(!session.request_facts(shown, false), "the body is not at rest yet");
-    session.solve(shown);
+    assert!(!session.request_facts(false, false, false), "the body is not at rest yet");
+    session.solve(false);
     // The reference that follows a load is prepared in the background.
-    while session.request_facts(shown, false) {
+    while session.request_facts(false, false, false) {
         std::thread::yield_now();
     }
-    let (facts, scene) = (session.facts(), session.scene());
-    assert!(facts.reference.get(scene).is_some() && facts.curve.get(scene).is_some());
+    let (facts, scene, mut curve) = (session.facts(), session.scene(), Keyed::<CurveFact>::default());
+    curve.wait(scene);
+    assert!(facts.reference.get(scene).is_some() && curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
     session.apply(edited(&session, "Method", |scene| scene.solver.method = MethodKind::Warped)).unwrap();
-    assert!(
-        !session.facts().reference.is_pending(session.scene()) && session.facts().curve.is_pending(session.scene())
-    );
+    assert!(!session.facts().reference.is_pending(session.scene()) && curve.is_pending(session.scene()));
     session.apply(with_force(&session, -150.0)).unwrap();
     assert!(session.facts().reference.is_pending(session.scene()) && session.facts().reference.latest().is_some());
-    session.solve(ShownFacts::default());
+    session.solve(false);
     assert!(session.facts().reference.get(session.scene()).is_some());
 }
 
@@ -356,7 +356,7 @@ fn a_full_disk_leaves_file_and_copy_as_they_were() {
 #[test]
 fn a_large_document_that_becomes_small_starts_over() {
     let mut session = session(cantilever(-100.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let large = large(6);
     let document = Document::new(source("large"), large.clone());
     session.apply(Edit::Restore(Box::new(Version { document, scene: large }))).unwrap();
@@ -399,10 +399,10 @@ fn a_large_body_without_an_equilibrium_comes_to_rest() {
     }
     assert!(is_lost(session.simulation()), "{:?}", session.simulation().status());
     let begun = Instant::now();
-    session.request_facts(ShownFacts::default(), false);
+    session.request_facts(false, false, false);
     while session.facts.certifying.is_some() {
         assert!(begun.elapsed().as_secs() < 60, "it is certified without end");
-        session.request_facts(ShownFacts::default(), false);
+        session.request_facts(false, false, false);
         std::thread::yield_now();
     }
 }
@@ -416,10 +416,10 @@ fn a_large_result_is_certified_in_the_background() {
         session.iterate();
     }
     let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
-    assert!(session.request_facts(ShownFacts::default(), false) && session.facts.certifying.is_some());
+    assert!(session.request_facts(false, false, false) && session.facts.certifying.is_some());
     assert_eq!(certificate(&session), None, "it is not computed between two frames");
     while session.facts.certifying.is_some() {
-        session.request_facts(ShownFacts::default(), false);
+        session.request_facts(false, false, false);
         std::thread::yield_now();
     }
     let mut own = Simulation::new(&scene).unwrap();
@@ -431,11 +431,11 @@ fn a_large_result_is_certified_in_the_background() {
     while session.iterates() {
         session.iterate();
     }
-    session.request_facts(ShownFacts::default(), false);
+    session.request_facts(false, false, false);
     session.apply(with_force(&session, -1200.0)).unwrap();
     while session.iterates() || session.facts.certifying.is_some() {
         session.iterate();
-        session.request_facts(ShownFacts::default(), false);
+        session.request_facts(false, false, false);
     }
     own.edit(|scene| scene.set_force(0, [0.0, -1200.0])).unwrap();
     own.solve();
@@ -447,7 +447,7 @@ fn a_large_result_is_certified_in_the_background() {
 #[test]
 fn a_large_mesh_is_made_in_the_background() {
     let mut session = session(cantilever(-1000.0));
-    session.solve(ShownFacts::default());
+    session.solve(false);
     let (before, finer) = (session.simulation().system().dofs(), large(5));
     session.apply(Edit::Scene("Cells", Box::new(finer.clone()))).unwrap();
     assert!(session.is_working(), "the mesh is not made between two frames");

@@ -134,14 +134,10 @@ impl Lab {
         let Desk { session, view, measure, .. } = &self.desk;
         let (facts, scene) = (session.facts(), session.scene());
         let plots = view.drawer == Some(Drawer::Section) && self.desk.sections.is_pending();
-        let measures = match view.measured(scene) {
-            Some(MeasureTab::LoadCurve) => facts.curve.is_pending(scene),
-            Some(MeasureTab::HowFar) => measure.limits_of.as_ref().is_none_or(|base| facts.limits.is_pending(base)),
-            Some(MeasureTab::HowFast) | None => false,
-        };
         let at_rest = facts.reference.is_pending(scene) || facts.path.is_pending(scene) || facts.time.is_pending(scene);
         let at_rest = at_rest || (self.learns_rho() || session.lacks_rho()) && facts.rho.is_pending(scene);
         let at_rest = !session.is_motion() && at_rest;
+        let measures = measure.is_pending(scene, view);
         session.is_working() || session.facts().certifying.is_some() || plots || measures || at_rest
     }
 

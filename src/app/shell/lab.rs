@@ -3,12 +3,11 @@
 use crate::app::interface::*;
 use crate::app::modes::compare::Compare;
 use crate::app::modes::learn::{self, Learn};
-use crate::app::modes::measure::{Measure, limits};
+use crate::app::modes::measure::Measure;
 use crate::app::modes::section_plot::SectionPlot;
 use crate::app::panel::PanelState;
 use crate::app::session::Notice;
 use crate::app::session::document::{Document, built_in};
-use crate::app::session::facts::ShownFacts;
 use crate::app::session::recovery::Unsaved;
 use crate::app::shell::file_dialog::FileDialog;
 use crate::app::shell::gallery::Gallery;
@@ -59,20 +58,6 @@ impl Desk {
             Mode::Compare => !self.compare.goes_on(),
             _ => self.session.has_ended(),
         }
-    }
-
-    /// Turns the limits to the scene while they are shown, and returns the results that only some views show; `learns_rho` is
-    /// `true` if a card of Learn shows ρ.
-    pub(super) fn shown_facts(&mut self, learns_rho: bool) -> (&mut Session, ShownFacts<'_>) {
-        let Self { session, view, measure: Measure { limits_of, .. }, .. } = self;
-        let tab = view.measured(session.scene());
-        let shows_limits = tab == Some(MeasureTab::HowFar);
-        if shows_limits {
-            limits::turn_to(limits_of, session.scene());
-        }
-        let limits_of = limits_of.as_ref().filter(|_| shows_limits);
-        session.turn_limits_to(limits_of);
-        (session, ShownFacts { curve: tab == Some(MeasureTab::LoadCurve), rho: learns_rho, limits_of })
     }
 }
 
@@ -192,10 +177,10 @@ impl Lab {
     pub fn solve(&mut self) {
         let has_search = *self.simulation().status() == Status::Running;
         let learns_rho = self.learns_rho();
-        let (session, shown) = self.desk.shown_facts(learns_rho);
-        session.solve(shown);
+        self.desk.session.solve(learns_rho);
         self.apply_session_changes();
-        let Desk { session, view, compare, sections, .. } = &mut self.desk;
+        let Desk { session, view, compare, measure, sections, .. } = &mut self.desk;
+        measure.obtain(session, view, false, true);
         if session.is_motion() {
             return;
         }

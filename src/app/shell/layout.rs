@@ -116,8 +116,9 @@ impl Lab {
         }
         let is_pressed = ctx.input(|i| i.pointer.any_down());
         let learns_rho = self.learns_rho();
-        let (session, shown) = self.desk.shown_facts(learns_rho);
-        if session.request_facts(shown, is_pressed) {
+        let Desk { session, view, measure, .. } = &mut self.desk;
+        let is_busy = measure.obtain(session, view, is_pressed, false);
+        if session.request_facts(learns_rho, is_busy, is_pressed) || is_busy {
             ctx.request_repaint_after(if session.is_following() { SOON } else { POLL });
         }
     }

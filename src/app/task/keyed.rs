@@ -249,10 +249,15 @@ impl<F: Fact> Keyed<F> {
         self.known().filter(|_| self.is_of(scene)).map(|(_, value)| value)
     }
 
+    /// Returns the scene that was last asked for.
+    pub(crate) fn asked(&self) -> Option<&Scene> {
+        Some(&self.asked.as_ref()?.scene)
+    }
+
     /// Returns the scene that was last asked for, with its value or the part of it that has been computed.
     pub(crate) fn known(&self) -> Option<(&Scene, &F::Value)> {
         let computed = self.computed.as_ref().and_then(|computed| computed.as_ref().ok()?.as_ref());
-        Some((&self.asked.as_ref()?.scene, computed.or(self.so_far.as_ref())?))
+        Some((self.asked()?, computed.or(self.so_far.as_ref())?))
     }
 
     /// Returns the reason why the value of a scene could not be computed.

@@ -22,23 +22,16 @@ const ROW: [f32; 2] = [13.0, 19.0];
 /// Largest height of a strip of a motion, which has no curve.
 const HIGH_ROW: f32 = 40.0;
 
-/// Turns from the scene `base` whose limits are shown to the lab's scene. Another load in the range of the limits does not
-/// change them, nor do method and element.
-pub(crate) fn turn_to(base: &mut Option<Scene>, scene: &Scene) {
-    base.take_if(|base| part_of(base, scene).is_none());
-    base.get_or_insert_with(|| scene.clone());
-}
-
-/// Shows the limits of the lab's scene: those of `base`, whose loads have the same proportions.
-pub(crate) fn show(ui: &mut Ui, session: &Session, base: &Scene, actions: &mut Vec<Action>) {
-    let (scene, shown, facts) = (session.scene(), session.drawn(), &session.facts().limits);
-    let Some(part) = part_of(base, scene) else { return };
-    let progress = facts.progress().map(|(done, _)| done as f32);
-    if let Some(reason) = facts.failure(base) {
+/// Shows the limits of the lab's scene: those of a scene whose loads have the same proportions.
+pub(crate) fn show(ui: &mut Ui, session: &Session, fact: &Keyed<facts::LimitsFact>, actions: &mut Vec<Action>) {
+    let (scene, shown) = (session.scene(), session.drawn());
+    let Some((base, part)) = fact.asked().and_then(|base| Some((base, part_of(base, scene)?))) else { return };
+    let progress = fact.progress().map(|(done, _)| done as f32);
+    if let Some(reason) = fact.failure(base) {
         ui.centered_and_justified(|ui| ui.weak(said(reason)));
         return;
     }
-    let Some(limits) = facts.so_far(base) else {
+    let Some(limits) = fact.so_far(base) else {
         ui.add_space(0.3 * ui.available_height());
         ui.vertical_centered(|ui| {
             ui.weak(tr(match scene.analysis {
@@ -79,12 +72,9 @@ pub(crate) fn show(ui: &mut Ui, session: &Session, base: &Scene, actions: &mut V
     });
 }
 
-/// Shows the key of the colours once limits are known; a line breaks between entries.
-pub(crate) fn key(ui: &mut Ui, session: &Session, base: &Scene) {
+/// Shows the key of the colours; a line breaks between entries.
+pub(crate) fn key(ui: &mut Ui, session: &Session) {
     const BOX: Vec2 = vec2(10.0, 10.0);
-    if session.facts().limits.so_far(base).is_none() {
-        return;
-    }
     ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
     for (ink, name) in Rating::ALL.map(|rating| rating.entry(session.is_motion())) {
         legend::entry(ui, &said(&name), BOX, &|ui, rect| {
@@ -100,7 +90,7 @@ pub(crate) fn key(ui: &mut Ui, session: &Session, base: &Scene) {
 
 /// Returns the part of the base's loads, or of its time step, that a scene has; `None` if the limits of the base are not
 /// those of the scene.
-fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
+pub(super) fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
     /// Relative rounding error of loads.
     const ROUNDING: f64 = 1e-9;
     let stops = |scene: &Scene| (scene.solver.accept_after, scene.element(), scene.solver.method);
@@ -111,6 +101,7 @@ fn part_of(base: &Scene, scene: &Scene) -> Option<f64> {
     let alike = |scene: &Scene| {
         let mut own = facts::with_default_methods(scene.clone());
         own.solver.accept_after = 0;
+        own.sections.clear();
         if moves {
             own.dynamics.time_step = base.dynamics.time_step;
         } else {

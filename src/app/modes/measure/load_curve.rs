@@ -16,8 +16,14 @@ const PLOTS: [(Ordinate, &str, &str); 4] = [
 
 /// Shows the plot, or the previous scene's while a new one is being computed. Without a plot it shows the reason: it is
 /// being computed, or the scene has none.
-pub(crate) fn show(ui: &mut Ui, session: &Session, chosen: Option<Ordinate>, actions: &mut Vec<Action>) {
-    let (scene, fact) = (session.scene(), &session.facts().curve);
+pub(crate) fn show(
+    ui: &mut Ui,
+    session: &Session,
+    fact: &Keyed<facts::CurveFact>,
+    chosen: Option<Ordinate>,
+    actions: &mut Vec<Action>,
+) {
+    let scene = session.scene();
     let looked_for = !fact.is_pending(scene);
     let Some(curve) = fact.latest() else {
         ui.centered_and_justified(|ui| {

@@ -9,8 +9,8 @@ use super::*;
 
 #[derive(Debug, Default)]
 pub(crate) struct Measure {
-    /// Scene whose limits are shown.
-    pub limits_of: Option<Scene>,
+    limits: Keyed<facts::LimitsFact>,
+    curve: Keyed<facts::CurveFact>,
     pub budget: Budget,
 }
 
@@ -18,7 +18,40 @@ impl Measure {
     /// Turns to another scene.
     pub(crate) fn open(&mut self, scene: &Scene) {
         self.budget.open(scene);
-        self.limits_of = None;
+        self.limits.turn_to(scene);
+        self.curve.clear();
+    }
+
+    /// Requests limits or curve while they are shown, of a body at rest or a motion, or computes them and `waits`; returns
+    /// `true` while they are pending.
+    pub(crate) fn obtain(&mut self, session: &Session, view: &ViewOptions, is_pressed: bool, waits: bool) -> bool {
+        let (Self { limits, curve, .. }, scene) = (self, session.scene());
+        let tab = view.measured(scene);
+        if tab != Some(MeasureTab::HowFar) && limits.progress().is_some() {
+            limits.clear();
+        }
+        curve.turn_to(scene);
+        let is_free = session.is_motion() || !(is_pressed || session.iterates() || session.is_working());
+        match tab {
+            Some(MeasureTab::HowFar) => {
+                // Another load in the range of the limits does not change them, nor do method and element.
+                let base =
+                    limits.asked().filter(|base| limits::part_of(base, scene).is_some()).unwrap_or(scene).clone();
+                limits.turn_to(&base);
+                is_free && limits.obtain(&base, waits)
+            }
+            Some(MeasureTab::LoadCurve) => is_free && curve.obtain(scene, waits),
+            Some(MeasureTab::HowFast) | None => false,
+        }
+    }
+
+    /// Returns `true` until the limits or the curve that are shown have been computed.
+    pub(crate) fn is_pending(&self, scene: &Scene, view: &ViewOptions) -> bool {
+        match view.measured(scene) {
+            Some(MeasureTab::HowFar) => self.limits.asked().is_none_or(|base| self.limits.is_pending(base)),
+            Some(MeasureTab::LoadCurve) => self.curve.is_pending(scene),
+            Some(MeasureTab::HowFast) | None => false,
+        }
     }
 
     /// Shows a tab.
@@ -34,18 +67,14 @@ impl Measure {
                     actions.push(Action::Toggle(Toggle::Tab(*other)));
                 }
             }
-            if let (MeasureTab::HowFar, Some(base)) = (tab, &self.limits_of) {
-                limits::key(ui, session, base);
+            if tab == MeasureTab::HowFar && self.limits.known().is_some() {
+                limits::key(ui, session);
             }
         });
         match tab {
-            MeasureTab::HowFar => {
-                if let Some(base) = &self.limits_of {
-                    limits::show(ui, session, base, actions);
-                }
-            }
+            MeasureTab::HowFar => limits::show(ui, session, &self.limits, actions),
             MeasureTab::HowFast => self.budget.show(ui, session, actions),
-            MeasureTab::LoadCurve => load_curve::show(ui, session, view.curve_plot, actions),
+            MeasureTab::LoadCurve => load_curve::show(ui, session, &self.curve, view.curve_plot, actions),
         }
     }
 }
