@@ -1,8 +1,7 @@
 //! Figures in the window: the plot, the table next to it, the choice of quantities, and export to files.
 
 use super::*;
-use crate::app::platform::files;
-use crate::app::platform::new_file::NewFile;
+use crate::app::platform::files::{self, NewFile};
 
 /// Format of a file with a figure: its extension, its description, and the function that writes its text.
 type FigureFormat = (&'static str, &'static str, fn(&Figure) -> String);
@@ -12,9 +11,6 @@ const FORMATS: [FigureFormat; 2] = [
 ];
 
 /// Saves the text of a figure in the current folder under the first free name, and returns its path.
-///
-/// # Errors
-/// Error of the operating system.
 pub(crate) fn save(extension: &str, text: &str) -> Result<PathBuf, Sentence> {
     let new = NewFile::create(Path::new(""), extension).map_err(|error| error.to_string())?;
     let path = new.path().to_owned();

@@ -7,9 +7,9 @@ mod desktop;
 mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) use desktop::{IS_PAGE, clipboard, files, new_file, page, settings, start, work};
+pub(crate) use desktop::{IS_PAGE, clipboard, files, page, settings, start, work};
 #[cfg(target_arch = "wasm32")]
-pub(crate) use web::{IS_PAGE, clipboard, files, new_file, page, settings, start, work};
+pub(crate) use web::{IS_PAGE, clipboard, files, page, settings, start, work};
 
 /// Smallest size of the window, points: all controls can be reached. Where a window is smaller, such as a page on a phone,
 /// everything in it is drawn smaller.

@@ -9,7 +9,7 @@ use winit::window::Window;
 use crate::app::AppError;
 use crate::app::offscreen::painter::PaintStage;
 use crate::app::platform::clipboard::Clipboard;
-use crate::app::platform::new_file::NewFile;
+use crate::app::platform::files::NewFile;
 use crate::app::prelude::*;
 use crate::render::{AdapterSearch, Candidate, Gpu, NO_WINDOW, RenderError, View, instance, read_texture, wanted_name};
 

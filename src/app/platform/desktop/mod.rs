@@ -2,7 +2,6 @@
 
 pub(crate) mod clipboard;
 pub(crate) mod files;
-pub(crate) mod new_file;
 pub(crate) mod page;
 pub(crate) mod settings;
 pub(crate) mod start;

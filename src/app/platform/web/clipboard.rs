@@ -7,7 +7,7 @@ use wasm_bindgen_futures::{JsFuture, spawn_local};
 use winit::event::{ElementState, WindowEvent};
 use winit::keyboard::{Key, ModifiersState};
 
-use crate::app::platform::web::browser;
+use crate::app::platform::web;
 
 thread_local! {
     /// Text that the browser has handed over, to be pasted.
@@ -56,8 +56,8 @@ impl Clipboard {
                 let written = clipboard.write_text(text);
                 spawn_local(async move {
                     if let Err(error) = JsFuture::from(written).await {
-                        REFUSED.set(Some(browser::message(&error)));
-                        browser::wake();
+                        REFUSED.set(Some(web::message(&error)));
+                        web::wake();
                     }
                 });
             }
@@ -72,7 +72,7 @@ fn read() {
     spawn_local(async move {
         if let Some(text) = JsFuture::from(clipboard.read_text()).await.ok().and_then(|text| text.as_string()) {
             PASTED.set(Some(text));
-            browser::wake();
+            web::wake();
         }
     });
 }

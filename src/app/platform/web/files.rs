@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Blob, File, FileList, HtmlAnchorElement, HtmlInputElement, Url};
 
-use crate::app::platform::web::browser;
+use crate::app::platform::web;
 use crate::mesh::Mesh;
 use crate::model::Invalid;
 use crate::scene::{self, Scene, SceneError, Source};
@@ -74,12 +74,12 @@ pub(crate) fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     }
     let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
     let blob = Blob::new_with_u8_array_sequence(&parts);
-    blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(browser::message(&error)))
+    blob.and_then(|blob| download(name, &blob)).map_err(|error| std::io::Error::other(web::message(&error)))
 }
 
 /// Offers data as a download.
 pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
-    let document = browser::document().ok_or("no document")?;
+    let document = web::document().ok_or("no document")?;
     let address = Url::create_object_url_with_blob(data)?;
     let link: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
     link.set_href(&address);
@@ -87,13 +87,13 @@ pub(super) fn download(name: &str, data: &Blob) -> Result<(), JsValue> {
     link.click();
     // The download begins after this event; its address is needed until then.
     let revoke = Closure::once_into_js(move || drop(Url::revoke_object_url(&address)));
-    browser::later(&revoke, 10_000);
+    web::later(&revoke, 10_000);
     Ok(())
 }
 
 /// Asks the browser for scene files.
 pub(crate) fn choose() {
-    let Some(document) = browser::document() else { return };
+    let Some(document) = web::document() else { return };
     let input = document.create_element("input").ok().and_then(|input| input.dyn_into::<HtmlInputElement>().ok());
     let Some(input) = input else { return };
     input.set_type("file");
@@ -119,11 +119,26 @@ pub(super) fn receive(list: &FileList) {
             STORE.with_borrow_mut(|store| store.texts.insert(name, text));
         }
         STORE.with_borrow_mut(|store| store.arrived = scene);
-        browser::wake();
+        web::wake();
     });
 }
 
 /// Returns a file chosen in the browser or dropped on the page.
 pub(crate) fn arrived() -> Option<PathBuf> {
     STORE.with_borrow_mut(|store| store.arrived.take())
+}
+
+/// Name of a download. A page has no folder: the browser changes a name that is taken.
+#[derive(Debug)]
+pub(crate) struct NewFile(PathBuf);
+
+impl NewFile {
+    /// Returns the name of a download.
+    pub(crate) fn create(_: &Path, extension: &str) -> std::io::Result<Self> {
+        Ok(Self(format!("warpbeam-001.{extension}").into()))
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
 }

@@ -12,7 +12,7 @@ use winit::event_loop::EventLoopProxy;
 use winit::platform::web::WindowExtWebSys as _;
 use winit::window::Window;
 
-use crate::app::platform::web::{browser, files};
+use crate::app::platform::web::{self, files};
 
 /// Level of the compression of scenes in links, of 10.
 const LEVEL: u8 = 9;
@@ -98,8 +98,8 @@ pub(crate) fn link(toml: &str) -> String {
 
 /// Receives dropped files, answers requests for a report, and wakes the event loop from now on.
 pub(super) fn listen(proxy: EventLoopProxy<()>) {
-    browser::set_proxy(proxy);
-    let Some(document) = browser::document() else { return };
+    web::set_proxy(proxy);
+    let Some(document) = web::document() else { return };
     let over = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| event.prevent_default());
     let dropped = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| {
         event.prevent_default();
@@ -116,7 +116,7 @@ pub(super) fn listen(proxy: EventLoopProxy<()>) {
 }
 
 pub(crate) fn set_title(_: &Window, title: &str) {
-    if let Some(document) = browser::document().filter(|document| document.title() != title) {
+    if let Some(document) = web::document().filter(|document| document.title() != title) {
         document.set_title(title);
     }
 }
@@ -145,11 +145,11 @@ pub(crate) fn save_frame(window: &Window, name: &str) -> Result<(), String> {
     let name = name.to_owned();
     let done = Closure::once_into_js(move |blob: Option<Blob>| {
         if let Some(Err(error)) = blob.map(|blob| files::download(&name, &blob)) {
-            log::warn!("no picture: {}", browser::message(&error));
+            log::warn!("no picture: {}", web::message(&error));
         }
     });
     let canvas = window.canvas().ok_or("canvas")?;
-    canvas.to_blob(done.unchecked_ref()).map_err(|error| browser::message(&error))
+    canvas.to_blob(done.unchecked_ref()).map_err(|error| web::message(&error))
 }
 
 /// Tells the page that a frame has been drawn. `report` returns the state of the window as JSON; it receives the number

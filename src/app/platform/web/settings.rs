@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use web_sys::Storage;
 
-use crate::app::platform::web::browser;
+use crate::app::platform::web;
 
 /// Returns the name of the settings.
 pub(crate) fn file() -> Option<PathBuf> {
@@ -49,13 +49,13 @@ pub(crate) fn lock(folder: &Path, number: usize) -> io::Result<Option<CopyPlace>
 /// Writes settings or a copy.
 pub(crate) fn write(file: &Path, text: &str) -> io::Result<()> {
     let (storage, name) = storage().zip(file.to_str()).ok_or(io::ErrorKind::Unsupported)?;
-    storage.set_item(name, text).map_err(|error| io::Error::other(browser::message(&error)))
+    storage.set_item(name, text).map_err(|error| io::Error::other(web::message(&error)))
 }
 
 /// Removes a copy, if there is one.
 pub(crate) fn remove(name: &Path) -> io::Result<()> {
     let Some((storage, name)) = storage().zip(name.to_str()) else { return Ok(()) };
-    storage.remove_item(name).map_err(|error| io::Error::other(browser::message(&error)))
+    storage.remove_item(name).map_err(|error| io::Error::other(web::message(&error)))
 }
 
 /// Returns the local storage; `None` if the browser is set to keep nothing.

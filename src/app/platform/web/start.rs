@@ -6,11 +6,11 @@ use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::platform::web::{EventLoopExtWebSys as _, WindowAttributesExtWebSys as _};
 use winit::window::WindowAttributes;
 
-use crate::app::platform::web::{browser, page};
+use crate::app::platform::web::{self, page};
 
 /// Returns the attributes of a window on the page's canvas, whose size the page sets.
 pub(crate) fn window(attributes: WindowAttributes, _: &ActiveEventLoop, _: [f32; 2]) -> WindowAttributes {
-    attributes.with_canvas(browser::canvas())
+    attributes.with_canvas(web::canvas())
 }
 
 /// Runs `opening` of the graphics device while the page goes on.

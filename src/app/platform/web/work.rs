@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
 use web_sys::{DedicatedWorkerGlobalScope, MessageEvent, WorkerOptions, WorkerType};
 
-use crate::app::platform::web::browser;
+use crate::app::platform::web;
 
 /// Largest number of workers that wait for a request. Each keeps the most memory that it has used.
 const MAX_IDLE: usize = 2;
@@ -23,7 +23,7 @@ thread_local! {
 
 /// Starts `work` after the current frame.
 pub(crate) fn start(_: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
-    browser::later(&Closure::once_into_js(work), 0);
+    web::later(&Closure::once_into_js(work), 0);
     Ok(())
 }
 
@@ -85,7 +85,7 @@ impl Debug for Worker {
 
 /// Sends a request to a worker; `receive` is called with its messages.
 pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> Received + 'static) -> io::Result<Worker> {
-    let failed = |error: JsValue| io::Error::other(browser::message(&error));
+    let failed = |error: JsValue| io::Error::other(web::message(&error));
     let own = match IDLE.with_borrow_mut(Vec::pop) {
         Some(worker) => worker,
         None => create().map_err(failed)?,
@@ -98,13 +98,13 @@ pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> Rec
             let bytes = js_sys::Uint8Array::new(&event.data()).to_vec();
             let received = receive.borrow_mut().as_mut().map_or(Received::Done, |receive| receive(&bytes));
             let close: fn(&web_sys::Worker) = match received {
-                Received::Progress => return browser::wake(),
+                Received::Progress => return web::wake(),
                 Received::Done => rest,
                 Received::Unreadable => web_sys::Worker::terminate,
             };
             receive.take();
             worker.take().iter().for_each(close);
-            browser::wake();
+            web::wake();
         })
     };
     let error = {
@@ -115,7 +115,7 @@ pub(crate) fn send(name: &str, request: &[u8], receive: impl FnMut(&[u8]) -> Rec
             log::error!("a worker failed: {}", message.unwrap_or_default());
             worker.take().iter().for_each(web_sys::Worker::terminate);
             receive.take();
-            browser::wake();
+            web::wake();
         })
     };
     own.set_onmessage(Some(message.as_ref().unchecked_ref()));
