@@ -14,7 +14,6 @@ pub(crate) enum Action {
     New(Box<Scene>),
     /// Ask for a scene file and open it.
     OpenFile,
-    /// Close the window.
     Close,
     /// Open the scene's file again.
     Reload,
@@ -22,9 +21,7 @@ pub(crate) enum Action {
     Save,
     /// Show the file dialog and save the scene to the chosen file.
     SaveAs,
-    /// Undo the last edit.
     Undo,
-    /// Redo the edit that was undone last.
     Redo,
     /// Close the topmost part that lies over the body.
     Escape,
@@ -46,19 +43,15 @@ pub(crate) enum Action {
     Speed(f64),
     /// Fit the camera to the whole body.
     Fit,
-    /// Show or hide a part of the display.
     Toggle(Toggle),
     /// Colour the body with a field.
     Color(Field),
-    /// Switch between light and dark theme.
     ToggleTheme,
-    /// Switch to the other language.
     ToggleLanguage,
     /// Plot these quantities in the load curve.
     Plot(Ordinate),
     /// Save the text of a figure to a file with this extension.
     Export(&'static str, String),
-    /// Save an image of the window.
     Screenshot,
     /// Copy the scene as TOML.
     Copy,

@@ -114,7 +114,7 @@ pub(crate) fn doubt(session: &Session, errors: &Errors) -> Option<String> {
     if !session.simulation().status().is_success() || session.simulation().motion().is_some() {
         return None;
     }
-    let quality = session.quality();
+    let quality = &session.model.quality;
     if quality.is_inside_out(session.simulation()) {
         // The status has it too.
         return errors.own.map(|_| tr("inverted elements").to_owned());
@@ -205,7 +205,7 @@ pub(crate) fn summary(session: &Session, remedy: Option<&Remedy>) -> (String, bo
             text.push_str(&part);
         }
     };
-    let inside_out = session.quality().is_inside_out(simulation);
+    let inside_out = session.model.quality.is_inside_out(simulation);
     if inside_out {
         add(tr("inverted elements").to_owned());
     }
@@ -251,7 +251,7 @@ pub(crate) fn stability(simulation: &Simulation) -> Option<bool> {
 /// Returns the spectral radius ρ of the warped iteration at the equilibrium; `None` if that is not known.
 pub(crate) fn rho(session: &Session) -> Option<f64> {
     let own = || session.simulation().equilibrium().filter(|_| session.simulation().status().is_success());
-    session.facts().rho.get(session.scene()).copied().or_else(|| own()?.certificate()?.fixed_point_rho)
+    session.facts.rho.get(session.scene()).copied().or_else(|| own()?.certificate()?.fixed_point_rho)
 }
 
 /// Returns `true` if a result was accepted of a warped iteration that diverges if it runs on.
@@ -331,7 +331,7 @@ pub(crate) fn explanation(session: &Session) -> Vec<String> {
         let reason = error_tip(session.known_reference(), session.reference_failure());
         lines.push(fill!("The error is not known. %{reason}", reason));
     }
-    if is_solved && session.quality().is_inside_out(simulation) {
+    if is_solved && session.model.quality.is_inside_out(simulation) {
         let text = "Inverted elements: an element has negative area, which no real body can have, although the \
                     equations are solved. Reduce the load, or refine the mesh.";
         lines.push(tr(text).to_owned());
@@ -408,7 +408,7 @@ pub(crate) fn remedy(session: &Session, errors: &Errors) -> Option<Remedy> {
         |text: &str, offer| Some(Remedy { text: sentence(text), offer: tr(offer).to_owned(), action: Action::Reset });
     if simulation.motion().is_some() || !simulation.is_at_rest() {
         let is_free = simulation.motion().is_some() && !has_stopped && simulation.mouse_spring().is_none();
-        let is_inverted = is_free && session.quality().is_inside_out(simulation);
+        let is_inverted = is_free && session.model.quality.is_inside_out(simulation);
         return if is_inverted { restart(tr("inverted elements"), "Reset") } else { None };
     }
     let with_newton = |text: String| {

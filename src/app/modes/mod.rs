@@ -4,8 +4,7 @@ pub(crate) mod compare;
 pub(crate) mod figure;
 pub(crate) mod learn;
 pub(crate) mod measure;
-pub(crate) mod motion_plot;
-pub(crate) mod section_plot;
+pub(crate) mod plots;
 
 use crate::app::interface::*;
 use crate::app::session::facts::{self, Curve};

@@ -120,7 +120,7 @@ fn displacement_rows(row: &mut ResultRow<'_>, simulation: &Simulation) {
 
 /// Shows the estimated mesh error, the largest stress and the largest strain.
 fn quality_rows(row: &mut ResultRow<'_>, session: &Session) {
-    let quality = session.quality();
+    let quality = &session.model.quality;
     let is_known = session.drawn().status().is_success() && quality.is_of(session.drawn());
     let error = quality.stress.mesh_error_percent.filter(|_| is_known);
     let text = known(error.map(|error| fill!("%{error} (estimate)", error = percent(error))));
@@ -152,7 +152,7 @@ fn quality_rows(row: &mut ResultRow<'_>, session: &Session) {
 
 fn frame_row(row: &mut ResultRow<'_>, session: &Session, (name, what): (&str, &str)) {
     let unknowns = count(session.simulation().system().dofs() as u64, "unknown");
-    let time = engineering(three_digits(session.timings().total().as_secs_f64()), "s");
+    let time = engineering(three_digits(session.frame.timings.total().as_secs_f64()), "s");
     row(name, joined([time, unknowns]), what);
 }
 

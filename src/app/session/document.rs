@@ -85,10 +85,7 @@ impl Document {
         Self::with_text(source, scene.clone(), Some("".into()))
     }
 
-    /// Opens a scene.
-    ///
-    /// # Errors
-    /// Reason for which there is no scene.
+    /// Opens a scene, or returns the reason for which there is none.
     pub(crate) fn open(source: Source) -> Result<Self, Sentence> {
         let original = files::open(&source).map_err(|error| match &error {
             error @ SceneError::Syntax { .. } => sentence!("not a scene: %{error}", error),
@@ -122,11 +119,8 @@ impl Document {
         scene
     }
 
-    /// Writes a scene to a file, as an edit of the text that was read, and returns the document of that file. A built-in
-    /// mesh is written beside it.
-    ///
-    /// # Errors
-    /// Reason for which it was not written; the file is unchanged.
+    /// Writes a scene to a file, as an edit of the text that was read, and returns the document of that file, or the reason
+    /// for which the file is unchanged. A built-in mesh is written beside it.
     pub(crate) fn save(&self, scene: &Scene, path: &Path) -> Result<Self, Sentence> {
         let mut written = self.relocated(scene, path);
         if let Some(mesh) = written.mesh.as_mut().filter(|_| !IS_PAGE) {

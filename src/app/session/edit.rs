@@ -44,12 +44,8 @@ impl Session {
         self.undo.record_press(press);
     }
 
-    /// Applies an edit, and returns the parts that have changed. A large model is set up in the background; the display
-    /// changes when it is solved.
-    ///
-    /// # Errors
-    /// Reason for which the edit was refused; the session is unchanged. Errors of a mesh that is made in the background
-    /// are reported later as a [`Notice`].
+    /// Applies an edit, and returns the parts that have changed, or the reason for which the session is unchanged. A large
+    /// model is set up in the background: the display changes when it is solved, and its errors are reported as a [`Notice`].
     pub(crate) fn apply(&mut self, edit: Edit) -> Result<Changed, Sentence> {
         let before = self.present.clone();
         let has_exploded = self.is_motion() && matches!(self.model.simulation.status(), Status::Stopped(_));
@@ -95,10 +91,7 @@ impl Session {
         if is_same { self.set_scene(step.scene) } else { self.replace(step) }
     }
 
-    /// Changes the scene of the body, which continues from its current state if possible.
-    ///
-    /// # Errors
-    /// [`SimulationError`]; the session is unchanged.
+    /// Changes the scene of the body, which continues from its current state if possible; an error leaves the session unchanged.
     pub(crate) fn set_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         if self.is_for_background(&scene) {
             scene.validate()?;
@@ -185,10 +178,8 @@ impl Session {
         self.frame.is_slow = false;
     }
 
-    /// Saves the scene to a file, which is the document from now on. Undo does not return to the previous file.
-    ///
-    /// # Errors
-    /// Reason for which the scene was not saved; the file is unchanged.
+    /// Saves the scene to a file, which is the document from now on, or returns the reason for which that file is unchanged.
+    /// Undo does not return to the previous file.
     pub(crate) fn save(&mut self, path: &Path) -> Result<(), Sentence> {
         let saved = self.present.document.save(&self.present.scene, path)?;
         let before = std::mem::replace(&mut self.present.document, saved);

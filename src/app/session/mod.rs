@@ -7,7 +7,6 @@ pub(crate) mod document;
 mod edit;
 pub(crate) mod facts;
 pub(crate) mod fallback;
-pub(crate) mod history;
 pub(crate) mod playback;
 pub(crate) mod recovery;
 pub(crate) mod run;
@@ -25,7 +24,7 @@ use crate::app::session::facts::{Facts, Live};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::session::undo::{UndoHistory, Version};
-use crate::app::task::solve::{MAX_UNKNOWNS, Model, Quality, solve_linear};
+use crate::app::task::solve::{MAX_UNKNOWNS, Model, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::state::State;
 use crate::study::{PathSummary, SolveFromRest, StudyError, is_unstable};
@@ -60,7 +59,7 @@ pub struct FrameWork {
     /// Part of this time that is left in the current frame.
     left: Duration,
     /// Time of the iterations of the last frame.
-    timings: Timings,
+    pub(crate) timings: Timings,
     /// `true` if a frame makes one iteration: slow motion of the method.
     pub is_slow: bool,
     /// `true` while the pointer is pressed.
@@ -93,7 +92,7 @@ pub struct Session {
     fallback: Fallback,
     /// Equilibrium before the body was grabbed, which its release restores, and the time of its iterations.
     before_grab: Option<(Model, Timings)>,
-    facts: Facts,
+    pub(crate) facts: Facts,
     /// `true` if the scene's file has changed on disk since it was read or saved.
     pub(crate) is_outdated: bool,
     pub(crate) changed: Changed,
@@ -149,14 +148,6 @@ impl Session {
     /// Returns the solution of linear theory.
     pub fn linear(&self) -> Option<&Simulation> {
         self.model.linear.as_ref()
-    }
-
-    pub(crate) fn quality(&self) -> &Quality {
-        &self.model.quality
-    }
-
-    pub(crate) fn facts(&self) -> &Facts {
-        &self.facts
     }
 
     /// Returns the reference solution that errors of the displayed result are measured against, or the reason for which
@@ -219,10 +210,6 @@ impl Session {
 
     fn is_grabbed(&self) -> bool {
         self.model.simulation.mouse_spring().is_some()
-    }
-
-    pub(crate) fn timings(&self) -> &Timings {
-        &self.frame.timings
     }
 
     /// Returns `true` if the scene is a motion.

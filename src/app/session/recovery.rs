@@ -34,10 +34,7 @@ struct Copy {
     file: Option<String>,
 }
 
-/// Writes an edited scene and its document to a copy.
-///
-/// # Errors
-/// Error of the operating system; the previous content is unchanged.
+/// Writes an edited scene and its document to a copy, whose previous content an error leaves unchanged.
 fn write(Unsaved { document, scene }: &Unsaved, file: &Path) -> io::Result<()> {
     let Source { name, assignments } = &document.source;
     // On a page there are no absolute paths.
@@ -112,9 +109,6 @@ impl RecoveryCopies {
 
     /// Writes the edits if the file does not contain them, or removes the file if there are none. Returns the time of
     /// the next attempt if it is too early to write.
-    ///
-    /// # Errors
-    /// Error of the operating system.
     pub(crate) fn keep(&mut self, edits: Option<&Unsaved>) -> io::Result<Option<Instant>> {
         if self.written.as_ref() != edits {
             let due = self.last.map(|last| last + PAUSE).filter(|due| *due > Instant::now());
@@ -134,18 +128,13 @@ impl RecoveryCopies {
     }
 
     /// Writes the edits, if there are any, without a pause since the last write.
-    ///
-    /// # Errors
-    /// Error of the operating system.
     pub(crate) fn keep_at_once(&mut self, edits: Option<&Unsaved>) -> io::Result<()> {
         self.last = None;
         self.keep(edits).map(drop)
     }
 
     /// Removes the newest copy left by a crashed window, once this window's own edits are written. Returns the one before.
-    ///
-    /// # Errors
-    /// Error of the operating system; the copy is still there.
+    /// After an error the copy is still there.
     pub(crate) fn discard_left(&mut self, edits: Option<&Unsaved>) -> io::Result<Option<Unsaved>> {
         self.keep_at_once(edits)?;
         self.left.pop().map_or(Ok(()), |(left, _)| settings::remove(&left.file))?;

@@ -217,16 +217,16 @@ fn results_are_computed_at_rest_and_invalidated_by_edits_that_change_them() {
     while session.request_facts(false, false, false) {
         std::thread::yield_now();
     }
-    let (facts, scene, mut curve) = (session.facts(), session.scene(), Keyed::<CurveFact>::default());
+    let (facts, scene, mut curve) = (&session.facts, session.scene(), Keyed::<CurveFact>::default());
     curve.wait(scene);
     assert!(facts.reference.get(scene).is_some() && curve.get(scene).is_some());
     // The reference solution depends on the load, but not on the method.
     session.apply(edited(&session, "Method", |scene| scene.solver.method = MethodKind::Warped)).unwrap();
-    assert!(!session.facts().reference.is_pending(session.scene()) && curve.is_pending(session.scene()));
+    assert!(!session.facts.reference.is_pending(session.scene()) && curve.is_pending(session.scene()));
     session.apply(with_force(&session, -150.0)).unwrap();
-    assert!(session.facts().reference.is_pending(session.scene()) && session.facts().reference.latest().is_some());
+    assert!(session.facts.reference.is_pending(session.scene()) && session.facts.reference.latest().is_some());
     session.solve(false);
-    assert!(session.facts().reference.get(session.scene()).is_some());
+    assert!(session.facts.reference.get(session.scene()).is_some());
 }
 
 /// Saving is not an edit: undo after "Save as" keeps the new file and everything that belongs to it.
@@ -425,7 +425,7 @@ fn a_large_result_is_certified_in_the_background() {
     let mut own = Simulation::new(&scene).unwrap();
     own.solve();
     assert_eq!(certificate(&session), Some(own.certify()));
-    assert!(session.quality().stress.mesh_error_percent.is_some());
+    assert!(session.model.quality.stress.mesh_error_percent.is_some());
     // An edit in the meantime keeps its own result.
     session.apply(with_force(&session, -1100.0)).unwrap();
     while session.iterates() {

@@ -5,10 +5,10 @@ use crate::app::diagnosis;
 use crate::app::language;
 use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::learn;
-use crate::app::modes::motion_plot;
+use crate::app::modes::plots;
 use crate::app::panel::{self, PANEL_WIDTH};
 use crate::app::session::undo::Press;
-use crate::app::shell::{shortcuts, status_bar, toolbar};
+use crate::app::shell::{bars, shortcuts};
 use crate::app::viewport::time_line;
 use crate::app::widgets::palette;
 
@@ -127,14 +127,14 @@ impl Lab {
     fn bars(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let bar = |ui: &Ui| unfilled(ui).inner_margin(Margin::symmetric(12, 0));
         let top = Panel::top("toolbar")
-            .exact_size(toolbar::HEIGHTS[usize::from(self.desk.view.layout.narrow)])
+            .exact_size(bars::HEIGHTS[usize::from(self.desk.view.layout.narrow)])
             .resizable(false)
             .frame(bar(ui));
         top.show(ui, |ui| self.toolbar(ui, actions));
         // Compared panes have a status each; a card of Learn in a narrow window leaves no room.
         if self.desk.view.mode != Mode::Compare && !(self.aside.is_some() && self.desk.view.layout.narrow) {
             let bottom = Panel::bottom("headline").exact_size(STATUS_BAR_HEIGHT).resizable(false).frame(bar(ui));
-            bottom.show(ui, |ui| status_bar::show(ui, &self.desk.session, &self.desk.view, actions));
+            bottom.show(ui, |ui| bars::show(ui, &self.desk.session, &self.desk.view, actions));
         }
         if self.desk.view.layout.panel && !self.desk.view.layout.narrow {
             let frame = unfilled(ui).inner_margin(Margin { left: 12, right: 8, top: 8, bottom: 4 });
@@ -180,7 +180,7 @@ impl Lab {
         let Desk { session, view, sections, .. } = &mut self.desk;
         drawer_panel(ui, DRAWER_HEIGHT).show(ui, |ui| match drawer {
             Drawer::Section => sections.show(ui, session, actions),
-            Drawer::Motion => motion_plot::show(ui, &mut view.motion_plot, session),
+            Drawer::Motion => plots::show_motion(ui, &mut view.motion_plot, session),
         });
     }
 
@@ -213,7 +213,7 @@ impl Lab {
             view,
             direction: panel.force_direction(),
             eases: viewport.eases,
-            reference: session.facts().reference.get(session.scene()).or(live.map(|live| &live.reference)),
+            reference: session.facts.reference.get(session.scene()).or(live.map(|live| &live.reference)),
             live,
             chosen: measure.budget.chosen(session.scene()),
         };
@@ -346,7 +346,7 @@ impl Lab {
                     if ui.button(tr("Cancel")).on_hover_text(tr("Return to the previous state (Esc)")).clicked() {
                         actions.push(Action::Cancel);
                     }
-                    let text = format!("{}\u{2026} {seconds} s", status_bar::phase_text(scene, phase));
+                    let text = format!("{}\u{2026} {seconds} s", bars::phase_text(scene, phase));
                     ui.colored_label(palette.text, text);
                 });
             });

@@ -145,9 +145,6 @@ impl ModelBase {
     }
 
     /// Sets up the model of a scene, before its first iteration.
-    ///
-    /// # Errors
-    /// [`SimulationError`].
     pub(crate) fn set_up(self, scene: &Scene) -> Result<Box<Model>, SimulationError> {
         Ok(match self {
             Self::Model(mut model) => {
@@ -203,10 +200,7 @@ pub(crate) struct BackgroundSolve {
 }
 
 impl BackgroundSolve {
-    /// Starts the thread.
-    ///
-    /// # Errors
-    /// The system cannot start another thread.
+    /// Starts the thread, if the system can start another one.
     pub(crate) fn start(request: SolveRequest) -> std::io::Result<Self> {
         let phase = if matches!(request.base, ModelBase::None) { Phase::Meshing } else { Phase::Iterating(0) };
         let scene = request.scene.clone();
@@ -251,9 +245,6 @@ pub(crate) fn solve_linear(scene: &Scene, system: &Arc<System>, known: Option<Si
 }
 
 /// Refuses a model that takes too long for a web page, which solves it on its own thread.
-///
-/// # Errors
-/// The number of unknowns that a page solves.
 pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
     let (most, n) = (MAX_UNKNOWNS, scene.unknowns());
     if !IS_PAGE || n <= most {
@@ -273,9 +264,6 @@ pub(crate) fn check_size(scene: &Scene) -> Result<(), SimulationError> {
 }
 
 /// Solves; `report` breaks to cancel.
-///
-/// # Errors
-/// [`SimulationError`].
 fn run(request: SolveRequest, report: &dyn Fn(Phase) -> ControlFlow<()>) -> SolveOutcome {
     let SolveRequest { scene, base, from_rest, iterations, is_displayed } = request;
     let is_new = matches!(base, ModelBase::None);

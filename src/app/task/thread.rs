@@ -55,10 +55,7 @@ pub(crate) struct Reporter<P, T> {
 }
 
 impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
-    /// Starts the thread.
-    ///
-    /// # Errors
-    /// The system cannot start another thread.
+    /// Starts the thread, if the system can start another one.
     pub(crate) fn start(name: &str, work: impl FnOnce(&Reporter<P, T>) -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
@@ -88,18 +85,12 @@ impl<P: Send + 'static, T: Send + 'static> Task<P, T> {
 
 impl<P: Data, T: Data> Task<P, T> {
     /// Starts work whose request and results are data.
-    ///
-    /// # Errors
-    /// The system cannot start another thread.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn run<R: Data>(name: &str, request: R, work: Work<R, P, T>) -> io::Result<Self> {
         Self::start(name, move |reporter| work(request, reporter))
     }
 
-    /// Starts work in a worker, which looks it up by its name.
-    ///
-    /// # Errors
-    /// The browser cannot start another worker.
+    /// Starts work in a worker, if the browser can start another one. The worker looks it up by its name.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn run<R: Data>(name: &str, request: R, _: Work<R, P, T>) -> io::Result<Self> {
         use platform::work::Received;

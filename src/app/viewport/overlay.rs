@@ -4,7 +4,7 @@ use egui::epaint::RectShape;
 
 use crate::app::diagnosis::{Errors, error_text, errors, load_text};
 use crate::app::interface::*;
-use crate::app::session::history::MotionSample;
+use crate::app::session::playback::MotionSample;
 use crate::app::viewport::arrow::{LoadArrow, is_seen};
 use crate::app::viewport::arrow_painter::paint_arrow;
 use crate::app::viewport::bars::{KEY_WIDTH, LEGEND_HEIGHT, color_bar, has_legend, is_tiny, magnified, scale_bar};

@@ -140,7 +140,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     let text = joined(strained.into_iter().chain([text]));
     let spoken = format!("{name}: {}: {error}{text}", setting.text());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let error_tip = error_tip(input.reference, input.session.facts().reference.failure(input.scene));
+    let error_tip = error_tip(input.reference, input.session.facts.reference.failure(input.scene));
     response.on_hover_text(format!("{text}\n{error_tip}\n{}", tr("Time and iterations: of a solve from rest")));
 }
 

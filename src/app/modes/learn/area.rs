@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     });
     row(ui, &palette, "reference", exact, palette.exact);
     let linear = Some(session.simulation()).filter(|_| method == MethodKind::Linear).or(session.linear());
-    if let Some(angle) = linear.map(triangle::largest_linear_angle) {
+    if let Some(angle) = linear.map(matrices::largest_linear_angle) {
         let text = fill!(
             "largest element: θ = %{angle} rad, drawn as atan θ = %{drawn}°; θ² = %{growth}",
             angle = number(three_digits(angle)),

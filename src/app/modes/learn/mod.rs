@@ -2,9 +2,9 @@
 //! time. The user's own scene is put aside, and restored when the mode ends.
 
 use cards::CardDisplay;
-use frames::{angle_text, paint_picked};
+use frames::angle_text;
+use matrices::Triangle;
 use nalgebra::{DMatrix, Matrix2};
-use triangle::{Triangle, assembled};
 
 use super::*;
 use crate::app::viewport::body_mesh::BodyMesh;
@@ -14,12 +14,10 @@ use crate::rotation::Rotation;
 mod area;
 mod cards;
 mod code;
-mod exploded;
 mod formula;
 mod frames;
 mod matrices;
 mod residuals;
-mod triangle;
 
 pub(crate) use cards::{CARDS, Card, Setup};
 pub(crate) use code::{AT_REST, SOLVE, UNTIL};
@@ -135,7 +133,7 @@ impl Learn {
     pub(crate) fn paint(&self, painter: &Painter, view: &CardView<'_>) {
         match self.card().content {
             CardDisplay::Frames | CardDisplay::Matrices | CardDisplay::Code => frames::paint(painter, view, self),
-            CardDisplay::Exploded => exploded::paint(painter, view, self),
+            CardDisplay::Exploded => frames::paint_rotated_back(painter, view, self),
             _ => {}
         }
     }
@@ -145,7 +143,7 @@ impl Learn {
         match self.card().content {
             CardDisplay::Area => area::show(ui, session, self, actions),
             CardDisplay::Frames => frames::show(ui, session, self, actions),
-            CardDisplay::Exploded => exploded::show(ui, session, self, actions),
+            CardDisplay::Exploded => frames::show_rotated_back(ui, session, self, actions),
             CardDisplay::Matrices => matrices::show(ui, session, self, actions),
             CardDisplay::Code => code::show(ui, session, self, actions),
             CardDisplay::Steps => residuals::steps(ui, session, actions),

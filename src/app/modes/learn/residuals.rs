@@ -65,7 +65,7 @@ fn plot(ui: &mut Ui, session: &Session) {
     const DASHES: plot::Stroke = plot::Stroke { width: 1.8, dashes: &[6.0, 4.0] };
     // The residuals of other methods do not follow it.
     let is_warped = session.scene().solver.method == MethodKind::Warped;
-    let rho = session.facts().rho.get(session.scene()).copied().filter(|_| is_warped);
+    let rho = session.facts.rho.get(session.scene()).copied().filter(|_| is_warped);
     let size = vec2(ui.available_width().min(460.0), (ui.available_height() - 4.0).clamp(96.0, 150.0));
     let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
     let size = [size.x, size.y].map(f64::from);
@@ -119,7 +119,7 @@ fn plot(ui: &mut Ui, session: &Session) {
     response.on_hover_text(tr(
         "Residual (unbalanced force over all forces) after each iteration; grey dashes: the tolerance",
     ));
-    if is_warped && session.facts().rho.is_pending(session.scene()) {
+    if is_warped && session.facts.rho.is_pending(session.scene()) {
         ui.label(RichText::new(tr("Computing ρ.")).small().weak());
     }
 }
