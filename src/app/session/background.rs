@@ -1,12 +1,8 @@
 //! Background solve of large models, one at a time. The model before stays on display; edits change the requested
 //! scene, which the next solve uses.
 
-use crate::app::prelude::*;
-use crate::app::session::undo::Version;
-use crate::app::session::{Notice, Session, has_mesh_of};
-use crate::app::task::solve::{
-    BackgroundSolve, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveOutcome, SolveRequest,
-};
+use super::*;
+use crate::app::task::solve::{BackgroundSolve, MAX_PANE_UNKNOWNS, ModelBase, Phase, SolveOutcome, SolveRequest};
 use crate::app::task::thread::Update;
 
 /// Time after which the meshing of a body that is solved between two frames is shown.

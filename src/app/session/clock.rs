@@ -36,21 +36,18 @@ pub(crate) struct RealTimeClock {
     pub factor: Option<f64>,
 }
 
-/// Time steps of one frame: those that are due, limited by the available time, but at least one.
-#[derive(Debug)]
-pub(crate) struct Steps {
-    due: u32,
-    made: u32,
-    begun: Instant,
-}
-
-impl Steps {
-    /// Returns `true` if another step is to be made, and counts it.
-    pub(crate) fn next(&mut self) -> bool {
-        let goes_on = self.made < self.due && (self.made == 0 || self.begun.elapsed() < WORK);
-        self.made += u32::from(goes_on);
-        goes_on
+/// Makes the time steps that are due, as many as a frame has time for, but at least one, until `make` returns `false`; returns
+/// their number.
+pub(crate) fn make_steps(due: u32, mut make: impl FnMut() -> bool) -> u32 {
+    let begun = Instant::now();
+    let mut made = 0;
+    while made < due && (made == 0 || begun.elapsed() < WORK) {
+        made += 1;
+        if !make() {
+            break;
+        }
     }
+    made
 }
 
 impl Default for RealTimeClock {
@@ -78,9 +75,9 @@ impl RealTimeClock {
         self.factor = None;
     }
 
-    /// Starts the frame at `now`, s, in which whole steps of length `step`, s, are due.
-    pub(crate) fn begin(&mut self, now: f64, step: f64) -> Steps {
-        let due = match self.last.replace(now) {
+    /// Starts the frame at `now`, s, and returns the number of whole steps of length `step`, s, that are due.
+    pub(crate) fn begin(&mut self, now: f64, step: f64) -> u32 {
+        match self.last.replace(now) {
             Some(last) => {
                 self.owed += (now - last).clamp(0.0, LONGEST_FRAME) * self.speed;
                 // The tolerance counts a time that is shorter than a step by rounding only as a step: a frame as long as
@@ -92,13 +89,12 @@ impl RealTimeClock {
                 // The first frame makes one step, so that the motion visibly starts.
                 1
             }
-        };
-        Steps { due, made: 0, begun: Instant::now() }
+        }
     }
 
-    /// Ends a frame in which `steps` of length `step`, s, were made. Missing steps are dropped: the motion slows down on a
-    /// machine that cannot keep up.
-    pub(crate) fn end(&mut self, &Steps { due, made, .. }: &Steps, step: f64) {
+    /// Ends a frame in which `made` of the steps of length `step`, s, that were due were made. Missing steps are dropped: the
+    /// motion slows down on a machine that cannot keep up.
+    pub(crate) fn end(&mut self, due: u32, made: u32, step: f64) {
         self.owed = if made < due { 0.0 } else { (self.owed - f64::from(made) * step).max(0.0) };
         let now = self.last.unwrap_or_default();
         self.counted.1 += f64::from(made) * step;
@@ -121,10 +117,9 @@ mod tests {
         let frames = (4.0 / frame).round() as u32;
         let mut all = 0;
         for i in 0..=frames {
-            let mut steps = clock.begin(f64::from(i) * frame, 1.0 / 60.0);
-            steps.made = steps.due;
-            clock.end(&steps, 1.0 / 60.0);
-            all += steps.due;
+            let due = clock.begin(f64::from(i) * frame, 1.0 / 60.0);
+            clock.end(due, due, 1.0 / 60.0);
+            all += due;
         }
         all
     }
@@ -144,11 +139,10 @@ mod tests {
         let mut clock = RealTimeClock::default();
         let mut made = 0;
         for i in 0..60 {
-            let mut steps = clock.begin(f64::from(i) * 0.05, 0.01);
-            assert!(steps.due <= 11, "the debt grows: {steps:?}");
-            steps.made = steps.due.min(2);
-            clock.end(&steps, 0.01);
-            made += steps.made;
+            let due = clock.begin(f64::from(i) * 0.05, 0.01);
+            assert!(due <= 11, "the debt grows: {due}");
+            clock.end(due, due.min(2), 0.01);
+            made += due.min(2);
         }
         assert!(made < 125);
         assert!(clock.lags() && clock.factor.is_some_and(|f| (0.3..0.5).contains(&f)), "{clock:?}");
@@ -157,10 +151,9 @@ mod tests {
     #[test]
     fn a_frame_after_a_long_absence_makes_up_for_little() {
         let mut clock = RealTimeClock::default();
-        let mut steps = clock.begin(0.0, 0.01);
-        steps.made = steps.due;
-        clock.end(&steps, 0.01);
-        assert!(clock.begin(3600.0, 0.01).due <= 10);
+        let due = clock.begin(0.0, 0.01);
+        clock.end(due, due, 0.01);
+        assert!(clock.begin(3600.0, 0.01) <= 10);
     }
     #[test]
     fn small_speeds_are_fractions() {

@@ -79,12 +79,6 @@ impl Document {
         Some(String::from_utf8_lossy(&bytes).into())
     }
 
-    /// Returns the document of a scene that is not in a file yet.
-    pub(crate) fn unnamed(scene: &Scene) -> Self {
-        let source = Source { name: scene::STANDARD_INPUT.into(), assignments: Vec::new() };
-        Self::with_text(source, scene.clone(), Some("".into()))
-    }
-
     /// Opens a scene, or returns the reason for which there is none.
     pub(crate) fn open(source: Source) -> Result<Self, Sentence> {
         let original = files::open(&source).map_err(|error| match &error {

@@ -1,16 +1,9 @@
 //! Edits of a session: of its scene, its document and its file, each with undo.
 
-use crate::app::prelude::*;
-use crate::app::session::background::Background;
-use crate::app::session::document::Document;
+use super::*;
 use crate::app::session::facts::Follower;
-use crate::app::session::playback::Playback;
-use crate::app::session::undo::{Press, UndoHistory, Version};
-use crate::app::session::{Session, has_mesh_of};
-use crate::app::task::solve::solve_linear;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::simulation::SimulationError;
-use crate::timings::Timings;
 
 /// Change of the model that can be undone.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +31,10 @@ pub(crate) struct Changed {
 }
 
 impl Session {
-    /// Records the presses of the pointer: edits during one press are one undo step.
-    pub(crate) fn record_press(&mut self, press: Press) {
-        self.frame.is_held = press.goes_on;
-        self.undo.record_press(press);
+    /// Records the state of the pointer, see [`UndoHistory::record_press`].
+    pub(crate) fn record_press(&mut self, now: f64, is_pressed: bool, goes_on: bool, double_click: f64) {
+        self.frame.is_held = goes_on;
+        self.undo.record_press(now, is_pressed, goes_on, double_click);
     }
 
     /// Applies an edit, and returns the parts that have changed, or the reason for which the session is unchanged. A large
@@ -58,7 +51,8 @@ impl Session {
             Edit::Open(source) => {
                 // A built-in scene keeps its edits. Chosen while it is the present scene, it is opened without them.
                 let is_kept = source.built_in().is_some() && source != before.document.source;
-                let version = match self.undo.last_of(&source).filter(|_| is_kept).cloned() {
+                let earlier = self.undo.past.iter().rev().find(|version| version.document.source == source);
+                let version = match earlier.filter(|_| is_kept).cloned() {
                     Some(version) => version,
                     None => {
                         let document = Document::open(source)?;
@@ -134,7 +128,11 @@ impl Session {
         self.changed.mesh |= is_another_mesh;
         self.changed.restart |= is_another_body;
         self.playback.change_scene(&self.model.simulation, is_another_body);
-        self.facts.turn_to(scene);
+        let facts = &mut self.facts;
+        facts.reference.turn_to(scene);
+        facts.path.turn_to(scene);
+        facts.rho.turn_to(scene);
+        facts.time.turn_to(scene);
         // A time step with other settings takes another time.
         let is_another_step = is_another_body || (&scene.dynamics, &scene.solver) != (&before.dynamics, &before.solver);
         if scene.analysis == Analysis::Dynamic && is_another_step {

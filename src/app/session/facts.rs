@@ -3,11 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::*;
 use crate::app::platform::IS_PAGE;
-use crate::app::prelude::*;
-use crate::app::session::Session;
 use crate::app::session::clock::FRAMES;
-use crate::app::session::fallback::is_lost;
 use crate::app::task::keyed::{Computed, Keyed, SentScene, facts};
 use crate::app::task::solve::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};
@@ -94,14 +92,6 @@ pub(crate) struct Facts {
 }
 
 impl Facts {
-    /// Cancels the computations for any other scene.
-    pub(super) fn turn_to(&mut self, scene: &Scene) {
-        self.reference.turn_to(scene);
-        self.path.turn_to(scene);
-        self.rho.turn_to(scene);
-        self.time.turn_to(scene);
-    }
-
     /// Requests the results of a scene at rest, with ρ if it is shown, or computes them and `waits`; returns `true` while one
     /// of them is pending, or another one (`is_busy`).
     pub(super) fn request_at_rest(&mut self, scene: &Scene, shows_rho: bool, is_busy: bool, waits: bool) -> bool {

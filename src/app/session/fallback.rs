@@ -1,7 +1,6 @@
 //! Bodies drawn in place of a search that has found no equilibrium.
 
-use crate::app::prelude::*;
-use crate::app::session::WILD;
+use super::*;
 use crate::simulation::Equilibrium;
 
 /// Last equilibrium, and the body at rest.

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use crate::app::prelude::*;
-use crate::app::session::clock::RealTimeClock;
+use crate::app::session::clock::{RealTimeClock, make_steps};
 use crate::dynamics::Ledger;
 use crate::simulation::Moment;
 
@@ -30,14 +30,12 @@ impl Playback {
     /// Makes the time steps that are due at `now`, s.
     pub(crate) fn advance(&mut self, now: f64, simulation: &mut Simulation) {
         let step = simulation.scene().dynamics.time_step;
-        let mut steps = self.clock.begin(now, step);
-        while steps.next() {
+        let due = self.clock.begin(now, step);
+        let made = make_steps(due, || {
             self.make_step(simulation);
-            if simulation.is_at_rest() {
-                break;
-            }
-        }
-        self.clock.end(&steps, step);
+            !simulation.is_at_rest()
+        });
+        self.clock.end(due, made, step);
         if self.played - self.kept >= BETWEEN_MOMENTS {
             self.keep_moment(simulation);
         }

@@ -8,9 +8,8 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 
+use super::*;
 use crate::app::platform::settings::{self, CopyPlace};
-use crate::app::prelude::*;
-use crate::app::session::document::Document;
 pub use crate::app::session::undo::Version as Unsaved;
 
 /// Largest number of windows that are open or have crashed.

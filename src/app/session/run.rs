@@ -1,10 +1,9 @@
 //! Run of a scene, to be compared with others: a solve or a motion. Small models are made and iterate between two
 //! frames, large ones in the background. The cost of a solve is measured from rest.
 
-use crate::app::prelude::*;
+use super::*;
 use crate::app::session::facts::first_probe;
-use crate::app::session::has_mesh_of;
-use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, Model, ModelBase, Phase, SolveRequest};
+use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, ModelBase, Phase, SolveRequest};
 use crate::simulation::{Deformation, ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.
@@ -87,17 +86,6 @@ fn has_ended(simulation: &Simulation, most_iterations: Option<u32>) -> bool {
 /// other settings.
 fn continues(one: &Scene, other: &Scene) -> bool {
     has_mesh_of(one, other) && one.dynamics == other.dynamics
-}
-
-/// Conditions of a solve in one frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FrameConditions {
-    /// `true` while the pointer is pressed: the solve continues from the current state of a dragged load.
-    pub holds: bool,
-    /// `true` if iterations are made at all.
-    pub runs: bool,
-    /// End of the time for iterations.
-    pub until: Instant,
 }
 
 impl Run {
@@ -229,10 +217,13 @@ impl Run {
         starts_over || was_away
     }
 
-    /// Applies a changed scene at rest, starting from the current state, and iterates.
-    pub(crate) fn advance(&mut self, wanted: Scene, known: &[Equations], frame: FrameConditions) {
+    /// Applies a changed scene at rest, and iterates `until` the end of the time for that, if it runs. While the pointer
+    /// `holds` a load, the solve continues from the current state.
+    pub(crate) fn advance(&mut self, wanted: Scene, known: &[Equations], until: Option<Instant>, holds: bool) {
         self.turn_to(wanted, known);
-        self.iterate(frame);
+        if let Some(until) = until {
+            self.iterate(until, holds);
+        }
     }
 
     /// Takes back a model that was solved in the background; returns `false` while it is still being solved.
@@ -289,16 +280,16 @@ impl Run {
         };
     }
 
-    fn iterate(&mut self, frame: FrameConditions) {
+    fn iterate(&mut self, until: Instant, holds: bool) {
         let most = self.most_iterations;
         let RunPlace::Here(model) = &mut self.place else { return };
         let simulation = &mut model.simulation;
-        if self.end.is_some() || !frame.runs {
+        if self.end.is_some() {
             return;
         }
         while !self.is_large && !has_ended(simulation, most) {
             simulation.step();
-            if Instant::now() >= frame.until {
+            if Instant::now() >= until {
                 break;
             }
         }
@@ -306,7 +297,7 @@ impl Run {
         if ended && self.from_rest {
             return self.conclude();
         }
-        if ended && frame.holds || !ended && !self.is_large {
+        if ended && holds || !ended && !self.is_large {
             return;
         }
         // The result reports the cost of a solve from rest, so a solve from another state is repeated from rest.
@@ -361,16 +352,16 @@ mod tests {
         scene
     }
 
-    /// Returns the conditions of a frame that has time for one iteration.
-    fn frame(holds: bool) -> FrameConditions {
-        FrameConditions { holds, runs: true, until: Instant::now() }
+    /// Makes a frame that has time for one iteration.
+    fn advance(run: &mut Run, scene: &Scene, holds: bool) {
+        run.advance(scene.clone(), &[], Some(Instant::now()), holds);
     }
 
     /// Advances until no work is left; returns the number of frames.
     fn iterate(run: &mut Run, scene: &Scene) -> u32 {
         let mut frames = 0;
         loop {
-            run.advance(scene.clone(), &[], frame(false));
+            advance(run, scene, false);
             if run.is_settled() {
                 return frames;
             }
@@ -393,7 +384,7 @@ mod tests {
         let mut run = Run::new(None);
         assert!(iterate(&mut run, &light) > 0, "one iteration per frame");
         while !run.waits() {
-            run.advance(heavy.clone(), &[], frame(true));
+            advance(&mut run, &heavy, true);
             assert!(run.end.is_none(), "the load is still held");
         }
         let (iterations, probe) = independent(&heavy);
@@ -408,7 +399,7 @@ mod tests {
     fn a_large_model_is_solved_in_the_background_and_follows_the_last_load() {
         let scene = |force| scene(MethodKind::Newton, [300, 8], force);
         let mut run = Run::new(None);
-        run.advance(scene(30.0), &[], frame(false));
+        advance(&mut run, &scene(30.0), false);
         assert!(run.is_away() && run.condition() == Condition::Outdated && run.answer().is_none());
         let last = scene(60.0);
         iterate(&mut run, &last);

@@ -2,8 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::app::session::document::Document;
-use crate::scene::{Scene, Source};
+use super::*;
 
 /// Largest number of undo steps.
 const MAX_STEPS: usize = 200;
@@ -13,19 +12,6 @@ const MAX_STEPS: usize = 200;
 pub struct Version {
     pub(crate) document: Document,
     pub(crate) scene: Scene,
-}
-
-/// State of the pointer in one frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Press {
-    /// Time, s.
-    pub now: f64,
-    /// `true` in the frame in which a button goes down.
-    pub is_pressed: bool,
-    /// `true` from the frame in which a button goes down to the frame in which it is released.
-    pub goes_on: bool,
-    /// Longest time between the presses of a double click, s.
-    pub double_click: f64,
 }
 
 /// Steps that can be undone and redone.
@@ -41,10 +27,10 @@ pub struct UndoHistory {
 }
 
 impl UndoHistory {
-    /// Records the state of the pointer: edits during one press, or during both presses of a double click, are one
-    /// step.
-    pub(crate) fn record_press(&mut self, press: Press) {
-        let Press { now, is_pressed, goes_on, double_click } = press;
+    /// Records the state of the pointer at the time `now`, s: edits during one press, or during both presses of a double
+    /// click, which are at most `double_click` s apart, are one step. `is_pressed` is `true` in the frame in which a button goes
+    /// down, `goes_on` from that frame to the one in which it is released.
+    pub(crate) fn record_press(&mut self, now: f64, is_pressed: bool, goes_on: bool, double_click: f64) {
         if goes_on && !is_pressed {
             return;
         }
@@ -95,11 +81,6 @@ impl UndoHistory {
         let is_same = |version: &&mut Version| version.document.source == *source;
         let past = self.past.iter_mut().rev().take_while(is_same);
         past.chain(self.future.iter_mut().rev().take_while(is_same))
-    }
-
-    /// Returns the last version of a document before the present one.
-    pub(crate) fn last_of(&self, source: &Source) -> Option<&Version> {
-        self.past.iter().rev().find(|version| version.document.source == *source)
     }
 
     /// Removes the steps beyond the first `depth`; they cannot be redone.

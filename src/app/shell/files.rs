@@ -8,6 +8,7 @@ use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::undo::UndoHistory;
 use crate::app::shell::file_dialog::{FileDialog, Purpose};
+use crate::scene::STANDARD_INPUT;
 
 impl Lab {
     /// Opens a scene in place of the current one, and shows a message if that fails.
@@ -193,8 +194,10 @@ impl Lab {
         match departure {
             Action::Open(name) => self.open(ctx, Source { name, assignments: Vec::new() }),
             Action::New(scene) => {
-                let version = Unsaved { document: Document::unnamed(&scene), scene: *scene };
-                _ = self.apply(ctx, Edit::Restore(Box::new(version)));
+                // The scene is not in a file yet.
+                let source = Source { name: STANDARD_INPUT.into(), assignments: Vec::new() };
+                let document = Document::with_text(source, (*scene).clone(), Some("".into()));
+                _ = self.apply(ctx, Edit::Restore(Box::new(Unsaved { document, scene: *scene })));
             }
             Action::OpenFile if IS_PAGE => files::choose(),
             Action::OpenFile => {

@@ -7,7 +7,6 @@ use crate::app::modes::compare::{Compare, CompareInput};
 use crate::app::modes::learn;
 use crate::app::modes::plots;
 use crate::app::panel::{self, PANEL_WIDTH};
-use crate::app::session::undo::Press;
 use crate::app::shell::{bars, shortcuts};
 use crate::app::viewport::time_line;
 use crate::app::widgets::palette;
@@ -38,7 +37,10 @@ impl Lab {
         language::speak(self.settings.language);
         let mut actions = Vec::new();
         self.end_story_on_input(ui.ctx());
-        self.desk.session.record_press(press(ui.ctx()));
+        let double_click = ui.ctx().options(|options| options.input_options.max_double_click_delay);
+        let (now, is_pressed, goes_on) =
+            ui.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down() || i.pointer.any_released()));
+        self.desk.session.record_press(now, is_pressed, goes_on, double_click);
         self.desk.panel.fade_messages(ui.ctx());
         self.check_files(ui.ctx(), &mut actions);
         self.request_facts(ui.ctx());
@@ -170,7 +172,8 @@ impl Lab {
         let Desk { session, viewport, view, panel: state, compare, .. } = &mut self.desk;
         let (scene, values) = (session.scene(), viewport.view.body.value_range());
         // The body that the panel describes may be in no pane.
-        let is_drawn = view.mode != Mode::Compare || !session.is_motion() && compare.shows(scene);
+        let is_in_pane = || compare.panes.iter().any(|pane| pane.setting.apply(scene) == *scene);
+        let is_drawn = view.mode != Mode::Compare || !session.is_motion() && is_in_pane();
         panel::show(ui, &mut panel::Panel { session, scene, values, state, view, actions }, is_drawn);
     }
 
@@ -360,17 +363,6 @@ fn fit_button(ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
     if ui.put(place, Button::new(tr("Fit"))).on_hover_text(tr("Show the whole body (F)")).clicked() {
         actions.push(Action::Fit);
     }
-}
-
-/// Returns the state of the pointer in this frame.
-fn press(ctx: &Context) -> Press {
-    let double_click = ctx.options(|options| options.input_options.max_double_click_delay);
-    ctx.input(|i| Press {
-        now: i.time,
-        is_pressed: i.pointer.any_pressed(),
-        goes_on: i.pointer.any_down() || i.pointer.any_released(),
-        double_click,
-    })
 }
 
 /// Returns the panel for the plots under the body.

@@ -100,17 +100,11 @@ pub(crate) fn work<F: Fact>(
 /// Running computation of a value.
 type FactTask<F> = Task<FactProgress<<F as Fact>::Value>, Computed<<F as Fact>::Value>>;
 
-/// Scene that a value is asked for.
-#[derive(Debug)]
-struct Asked {
-    scene: Scene,
-    key: Scene,
-}
-
 /// Value of the scene that was last asked for, computed in the background.
 #[derive(Debug)]
 pub(crate) struct Keyed<F: Fact> {
-    asked: Option<Asked>,
+    /// Scene that was asked for, and its key.
+    asked: Option<(Scene, Scene)>,
     /// Value of the scene that was asked for; `None` until it has been computed.
     computed: Option<Computed<F::Value>>,
     /// Value of the scene before.
@@ -143,12 +137,12 @@ impl<F: Fact> Keyed<F> {
         let computed = self.computed.take().map(|computed| computed.ok().flatten());
         self.previous = computed.unwrap_or_else(|| self.previous.take());
         self.cancel();
-        self.asked = Some(Asked { scene: scene.clone(), key: Self::key(scene) });
+        self.asked = Some((scene.clone(), Self::key(scene)));
     }
 
     /// Returns `true` if the scene has the key of the one that was last asked for.
     pub(crate) fn is_of(&self, scene: &Scene) -> bool {
-        self.asked.as_ref().is_some_and(|asked| asked.scene == *scene || asked.key == Self::key(scene))
+        self.asked.as_ref().is_some_and(|(asked, key)| asked == scene || *key == Self::key(scene))
     }
 
     /// Removes all values.
@@ -251,7 +245,7 @@ impl<F: Fact> Keyed<F> {
 
     /// Returns the scene that was last asked for.
     pub(crate) fn asked(&self) -> Option<&Scene> {
-        Some(&self.asked.as_ref()?.scene)
+        Some(&self.asked.as_ref()?.0)
     }
 
     /// Returns the scene that was last asked for, with its value or the part of it that has been computed.

@@ -2,15 +2,14 @@
 
 use std::io;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::Duration;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::app::platform;
+use crate::app::prelude::*;
 
 /// Time between two polls of a background task.
 pub(crate) const POLL: Duration = Duration::from_millis(50);

@@ -3,9 +3,9 @@
 
 use self::setting::PANES;
 use super::*;
-use crate::app::session::clock::RealTimeClock;
-use crate::app::session::run::{FrameConditions, Run};
-use crate::app::task::solve::Equations;
+use crate::app::session::clock::{RealTimeClock, make_steps};
+use crate::app::session::run::Run;
+use crate::app::task::solve::{Equations, Model};
 use crate::app::task::thread::QUIET_POLL;
 use crate::app::viewport::bars;
 use crate::app::viewport::camera_controller::{ARROW_ROOM, Box2, CameraController, grow, grow_to_linear};
@@ -110,11 +110,6 @@ impl Compare {
         self.fit();
     }
 
-    /// Returns `true` if a pane has the settings of the scene.
-    pub(crate) fn shows(&self, scene: &Scene) -> bool {
-        self.panes.iter().any(|pane| pane.setting.apply(scene) == *scene)
-    }
-
     pub(crate) fn camera(&self) -> Camera {
         self.controller.as_ref().map_or(Camera { center: Vector2::zeros(), scale: 1.0 }, |controller| controller.shown)
     }
@@ -163,7 +158,8 @@ impl Compare {
 
     /// Returns the existing equations that the panes can share: those of the body in Explore, and their own.
     fn equations(&self, session: &Session) -> Vec<Equations> {
-        std::iter::once(session.model.equations()).chain(self.panes.iter().filter_map(Pane::equations)).collect()
+        let models = self.panes.iter().filter_map(|pane| pane.run.model());
+        std::iter::once(&session.model).chain(models).map(Model::equations).collect()
     }
 
     /// Solves all panes, and waits for them; `times` them, too.
@@ -171,7 +167,7 @@ impl Compare {
         let mut equations = self.equations(session);
         for pane in &mut self.panes {
             pane.run.solve_to_end(pane.setting.apply(session.scene()), &equations);
-            equations.extend(pane.equations());
+            equations.extend(pane.run.model().map(Model::equations));
             if times {
                 pane.obtain_time(true);
             }
@@ -185,7 +181,7 @@ impl Compare {
         let mut equations = self.equations(session);
         for pane in &mut self.panes {
             starts_over |= pane.run.turn_to(pane.setting.apply(scene), &equations);
-            equations.extend(pane.equations());
+            equations.extend(pane.run.model().map(Model::equations));
         }
         if starts_over {
             self.reset();
@@ -195,11 +191,12 @@ impl Compare {
             return self.clock.rest();
         }
         let step = scene.dynamics.time_step;
-        let mut steps = self.clock.begin(now, step);
-        while self.goes_on() && steps.next() {
+        let due = self.clock.begin(now, step);
+        let made = make_steps(due, || {
             self.step();
-        }
-        self.clock.end(&steps, step);
+            self.goes_on()
+        });
+        self.clock.end(due, made, step);
     }
 
     /// Applies the scene at rest, and iterates.
@@ -208,8 +205,8 @@ impl Compare {
         let (equations, runs) = (self.equations(input.session), input.session.is_running());
         let share = WORK / u32::try_from(self.panes.len().max(1)).unwrap_or(1);
         for pane in &mut self.panes {
-            let frame = FrameConditions { holds, runs, until: Instant::now() + share };
-            pane.run.advance(pane.setting.apply(input.scene), &equations, frame);
+            let until = runs.then(|| Instant::now() + share);
+            pane.run.advance(pane.setting.apply(input.scene), &equations, until, holds);
             pane.is_dragged = holds && runs;
             pane.update_error(input);
         }

@@ -7,7 +7,6 @@ use crate::app::diagnosis::equilibrium_text;
 use crate::app::session::WILD;
 use crate::app::session::fallback::Fallback;
 use crate::app::session::run::{Condition, Run};
-use crate::app::task::solve::{Equations, Model};
 use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::camera_controller::CameraController;
 use crate::app::viewport::overlay::{self, Overlay};
@@ -137,11 +136,6 @@ impl Pane {
             self.range = Some(body.range);
         }
         self.view.body = body;
-    }
-
-    /// Returns the equations of the model, for other panes with the same mesh.
-    pub(super) fn equations(&self) -> Option<Equations> {
-        self.run.model().map(Model::equations)
     }
 
     /// Returns the displayed body with the loads of the scene that was asked for.

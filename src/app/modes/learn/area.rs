@@ -17,9 +17,13 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     }
     let outline =
         session.known_reference().filter(|_| session.simulation().is_at_rest()).map(|reference| &reference.outline);
+    // The area inside a closed line, m²: positive for a counter-clockwise one.
+    let enclosed = |line: &Vec<Vector2<f64>>| {
+        0.5 * line.iter().zip(line.iter().cycle().skip(1)).map(|(a, b)| a.perp(b)).sum::<f64>()
+    };
     let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
         let rest: f64 = session.simulation().system().nodal_areas().iter().sum();
-        lines.iter().map(|line| enclosed(line)).sum::<f64>().abs() / rest - 1.0
+        lines.iter().map(enclosed).sum::<f64>().abs() / rest - 1.0
     });
     row(ui, &palette, "reference", exact, palette.exact);
     let linear = Some(session.simulation()).filter(|_| method == MethodKind::Linear).or(session.linear());
@@ -60,12 +64,6 @@ fn force(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &mut Vec<Ac
         let new = [x, y].map(|v| v * new / size);
         actions.push(Action::edit("Force", scene, |scene| _ = scene.set_force(number, new)));
     }
-}
-
-/// Returns the area inside a closed line, m², positive for a counter-clockwise line.
-fn enclosed(line: &[Vector2<f64>]) -> f64 {
-    let next = line.iter().cycle().skip(1);
-    0.5 * line.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>()
 }
 
 fn row(ui: &mut Ui, palette: &Palette, name: &str, growth: Option<f64>, color: Color32) {

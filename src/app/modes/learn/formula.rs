@@ -20,10 +20,6 @@ enum Level {
     Lowered,
 }
 
-pub(super) fn set(markup: &str, color: Color32) -> LayoutJob {
-    sized(markup, SIZE, color)
-}
-
 /// Lays out a formula with a font size, points.
 pub(super) fn sized(markup: &str, size: f32, color: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
@@ -121,7 +117,7 @@ mod tests {
     /// A superscript keeps its distance from an italic letter before it; a subscript need not.
     #[test]
     fn slanted_letters_do_not_touch_superscripts() {
-        let lead = |markup: &str, section: usize| set(markup, Color32::WHITE).sections[section].leading_space;
+        let lead = |markup: &str, section: usize| sized(markup, SIZE, Color32::WHITE).sections[section].leading_space;
         assert!(lead("θ^{2}", 1) >= 2.0 && lead("R^{T}", 1) >= 2.0);
         assert_eq!((lead("x_{k}", 1), lead("`const`^{2}", 1)), (0.0, 0.0));
     }

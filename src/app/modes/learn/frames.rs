@@ -108,7 +108,7 @@ fn show_matrix(ui: &mut Ui, (name, before): (&str, &str), m: &Matrix2<f64>, pale
         let at = pos2(whole.left() + 4.0, rect.center().y);
         painter.text(at, Align2::CENTER_CENTER, before, FontId::proportional(BODY + 4.0), palette.text);
     }
-    let galley = painter.layout_job(formula::set(name, palette.secondary));
+    let galley = painter.layout_job(formula::sized(name, formula::SIZE, palette.secondary));
     painter.galley(pos2(rect.center().x - 0.5 * galley.size().x, rect.bottom() + 2.0), galley, palette.secondary);
     let [a, b, c, d] = numbers;
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name} = [{a} {b}; {c} {d}]")));

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
         ui.spacing_mut().item_spacing.x = GAP;
         for (markup, plain, matrix) in [("K_{e}", "Ke", &stiffness.ke), ("R K_{e} R^{T}", "R Ke RT", &rotated)] {
             ui.vertical(|ui| {
-                ui.label(formula::set(markup, palette.text));
+                ui.label(formula::sized(markup, formula::SIZE, palette.text));
                 let text = fill!("%{matrix} of triangle %{n}, 6 by 6", matrix = plain, n = learn.picked);
                 cells(ui, &palette, (scale * SMALL_SIDE, largest, &text), matrix, &local, &|_, _| true);
             });
@@ -58,7 +58,7 @@ fn whole(ui: &mut Ui, session: &Session, palette: &Palette, side: f32, triangle:
     let simulation = session.simulation();
     let (pattern, nodes) = (simulation.system().pattern(), simulation.system().mesh().nodes().len());
     let (all, free) = (2 * nodes, pattern.dofs());
-    ui.label(formula::set("Σ R K_{e} R^{T}", palette.text));
+    ui.label(formula::sized("Σ R K_{e} R^{T}", formula::SIZE, palette.text));
     let matrix = (all <= MAX_UNKNOWNS).then(|| assembled(simulation)).flatten();
     let Some(matrix) = matrix else {
         ui.label(tr("Too many unknowns to draw."));

@@ -9,7 +9,11 @@ pub(super) fn steps(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let ended = *session.simulation().status() != Status::Running;
         step_buttons(ui, session, ("Step once", "One iteration (N)", !ended), actions);
-        if let Some(ratio) = last_ratio(&session.model.residuals) {
+        if let [.., before, last] = session.model.residuals[..]
+            && before > 0.0
+            && (last / before).is_finite()
+        {
+            let ratio = last / before;
             let text = fill!("last step: residual × %{ratio}", ratio = rho_number(ratio));
             ui.add(Label::new(text).extend());
         }
@@ -49,12 +53,6 @@ pub(super) fn elements(ui: &mut Ui, scene: &Scene, actions: &mut Vec<Action>) {
         ui.add(Label::new(RichText::new(tr(element.entry().about)).small().weak()).wrap());
         ui.add_space(2.0);
     }
-}
-
-fn last_ratio(residuals: &[f64]) -> Option<f64> {
-    let [.., before, last] = residuals else { return None };
-    let ratio = last / before;
-    (ratio.is_finite() && *before > 0.0).then_some(ratio)
 }
 
 fn plot(ui: &mut Ui, session: &Session) {
