@@ -81,9 +81,6 @@ pub enum ThemeChoice {
 
 impl From<ThemeChoice> for egui::Theme {
     fn from(choice: ThemeChoice) -> Self {
-        match choice {
-            ThemeChoice::Dark => Self::Dark,
-            ThemeChoice::Light => Self::Light,
-        }
+        if choice == ThemeChoice::Dark { Self::Dark } else { Self::Light }
     }
 }

@@ -14,7 +14,6 @@ use crate::state::State;
 use crate::study::section_chart::{self, COMPONENTS, STRESSES};
 
 /// Sections of one equilibrium.
-#[derive(Debug)]
 struct Cuts {
     of: (State, Scene),
     /// `true` if the computation ended unexpectedly.
@@ -77,7 +76,7 @@ enum SectionFigure {
 }
 
 /// Plots of the sections of the last equilibrium, computed once per state.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct SectionPlot {
     cuts: Option<Cuts>,
     computing: Option<Task<(), Box<Cuts>>>,

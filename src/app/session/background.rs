@@ -9,7 +9,7 @@ use crate::app::task::thread::Update;
 const SOON: Duration = Duration::from_millis(500);
 
 /// Background work of a session.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Background {
     solve: Option<Box<BackgroundSolve>>,
     /// Session before the first edit whose result is incomplete.
@@ -21,7 +21,6 @@ pub(super) struct Background {
 }
 
 /// Session before an edit, restored if the edit is cancelled.
-#[derive(Debug)]
 pub(super) struct Before {
     since: Instant,
     pub version: Version,

@@ -78,7 +78,7 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
 }
 
 /// Results of the current scene; each is `None` until it has been computed.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Facts {
     pub reference: Keyed<ReferenceFact>,
     pub path: Keyed<PathFact>,
@@ -170,7 +170,6 @@ pub(crate) fn first_probe(body: &Simulation) -> Option<Vector2<f64>> {
 }
 
 /// Reference solution under a load, and the displacements that it is compared with.
-#[derive(Debug)]
 pub(crate) struct Live {
     /// Scene without the settings on which the reference does not depend.
     pub key: Scene,
@@ -203,7 +202,7 @@ impl Live {
 type LiveTask = Task<(), (Option<Box<LiveReference>>, Option<Box<Live>>)>;
 
 /// Reference solution that follows the load.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Follower {
     /// Key of the scene that was solved last, or is being solved.
     asked: Option<Scene>,

@@ -75,7 +75,6 @@ pub struct FrameWork {
 }
 
 /// One model being worked on.
-#[derive(Debug)]
 pub struct Session {
     /// Document, and the requested scene, which differs from the simulation's only while a background solve is in progress.
     present: Version,
@@ -307,22 +306,17 @@ impl Session {
         let since = Instant::now();
         while *self.model.simulation.status() == Status::Running {
             self.iterate_once();
-            self.start_again();
+            // After a search from another state that has found no equilibrium, an iteration may lead to one from rest.
+            let simulation = &mut self.model.simulation;
+            let is_free = simulation.mouse_spring().is_none() && !self.frame.is_slow;
+            if is_lost(simulation) && is_free && !std::mem::replace(&mut self.frame.is_from_rest, true) {
+                self.playback.reset(simulation);
+            }
             if self.frame.is_slow || since.elapsed() >= self.frame.left {
                 break;
             }
         }
         self.frame.left = self.frame.left.saturating_sub(since.elapsed());
-    }
-
-    /// Goes back to rest after a search from another state that has found no equilibrium: an iteration may lead to one from
-    /// there.
-    fn start_again(&mut self) {
-        let simulation = &mut self.model.simulation;
-        let is_free = simulation.mouse_spring().is_none() && !self.frame.is_slow;
-        if is_lost(simulation) && is_free && !std::mem::replace(&mut self.frame.is_from_rest, true) {
-            self.playback.reset(simulation);
-        }
     }
 
     /// Iterates after an edit, in the same frame; returns `true` if that has changed what the frame shows.
@@ -378,16 +372,20 @@ impl Session {
         self.frame.is_from_rest = true;
     }
 
-    /// Iterates until the status is final, or to the end of the motion's duration, and computes the results, with ρ if it is
-    /// shown.
+    /// Iterates until the status is final, or to the end of the motion's duration.
+    fn iterate_to_end(&mut self) {
+        while *self.model.simulation.status() == Status::Running {
+            self.iterate();
+        }
+    }
+
+    /// Iterates to the end, and computes the results, with ρ if it is shown.
     pub(crate) fn solve(&mut self, shows_rho: bool) {
         self.poll();
         while self.take_update(true) {
             self.poll();
         }
-        while *self.model.simulation.status() == Status::Running {
-            self.iterate();
-        }
+        self.iterate_to_end();
         if self.is_motion() {
             return;
         }
@@ -400,9 +398,7 @@ impl Session {
     /// not reach; for a body so small that this takes less than a frame.
     pub(crate) fn solve_from_rest(&mut self) {
         self.reset();
-        while *self.model.simulation.status() == Status::Running {
-            self.iterate();
-        }
+        self.iterate_to_end();
         self.certify();
         if self.lacks_rho() {
             self.facts.rho.wait(&self.present.scene);
@@ -420,7 +416,16 @@ impl Session {
             return;
         }
         if let Some(point) = grab.start {
-            self.start_grab(point);
+            // If the body is in equilibrium, a copy is grabbed and the original is kept for the release.
+            let is_final = self.model.simulation.status().is_success();
+            match self.model.snapshot().filter(|_| is_final) {
+                Some(mut copy) => {
+                    if copy.simulation.grab(point) {
+                        self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.frame.timings));
+                    }
+                }
+                None => _ = self.model.simulation.grab(point),
+            }
         }
         if let Some(target) = grab.target
             && self.model.simulation.mouse_spring().is_some_and(|(spring, _)| spring.target() != target)
@@ -431,20 +436,6 @@ impl Session {
         }
         if grab.release {
             self.release();
-        }
-    }
-
-    /// Grabs the body at a material point. If the body is in equilibrium, a copy is grabbed and the original is kept
-    /// for the release.
-    fn start_grab(&mut self, point: MaterialPoint) {
-        let is_final = self.model.simulation.status().is_success();
-        match self.model.snapshot().filter(|_| is_final) {
-            Some(mut copy) => {
-                if copy.simulation.grab(point) {
-                    self.before_grab = Some((std::mem::replace(&mut self.model, copy), self.frame.timings));
-                }
-            }
-            None => _ = self.model.simulation.grab(point),
         }
     }
 

@@ -64,7 +64,6 @@ impl Unsaved {
 }
 
 /// File for this window's copy, and the copies left by crashed windows.
-#[derive(Debug)]
 pub struct RecoveryCopies {
     place: CopyPlace,
     /// Edits that the file contains.

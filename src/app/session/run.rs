@@ -4,10 +4,11 @@
 use super::*;
 use crate::app::session::facts::first_probe;
 use crate::app::task::solve::{BackgroundSolve, Equations, MAX_PANE_UNKNOWNS, ModelBase, Phase, SolveRequest};
+use crate::app::task::thread::Update;
 use crate::simulation::{Deformation, ProbeResult, probe_results};
 
 /// Solve or motion of a scene, for comparison with others.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Run {
     /// Number of iterations after which a solve is stopped.
     most_iterations: Option<u32>,
@@ -55,7 +56,7 @@ pub(crate) enum Condition {
 }
 
 /// Place where a model is solved.
-#[derive(Debug, Default)]
+#[derive(Default)]
 enum RunPlace {
     /// No model yet.
     #[default]
@@ -232,8 +233,19 @@ impl Run {
         if self.given != self.wanted {
             solve.task.cancel();
         }
-        let Some(ended) = solve.poll_end() else { return false };
-        self.place = ended.map_or_else(RunPlace::Refused, RunPlace::Here);
+        self.place = loop {
+            match solve.task.poll() {
+                Update::None => return false,
+                Update::Progress(phase) => solve.phase = phase,
+                Update::Done(outcome) => {
+                    break outcome.map_or_else(|error| RunPlace::Refused((&error).into()), RunPlace::Here);
+                }
+                Update::Died => {
+                    let reason = sentence!("the solve ended unexpectedly: change a value to solve again");
+                    break RunPlace::Refused(reason);
+                }
+            }
+        };
         if self.given == self.wanted {
             self.conclude();
         }

@@ -19,6 +19,12 @@ fn session(scene: Scene) -> Session {
     Session::new(source("-"), scene, simulation)
 }
 
+fn solved(scene: Scene) -> Session {
+    let mut session = session(scene);
+    session.solve(false);
+    session
+}
+
 /// Returns a session with a scene of this name.
 fn open(source: Source) -> Session {
     let scene = crate::scene::open(&source).unwrap();
@@ -50,8 +56,7 @@ fn wait(session: &mut Session) {
 
 #[test]
 fn edits_change_the_solution_and_are_undone_and_redone() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let first = tip(&session);
     let changed = session.apply(with_force(&session, -200.0)).unwrap();
     assert_eq!(changed, Changed { scene: true, ..Changed::default() });
@@ -70,8 +75,7 @@ fn edits_change_the_solution_and_are_undone_and_redone() {
 
 #[test]
 fn a_refused_edit_leaves_the_session_unchanged() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let (scene, first) = (session.scene().clone(), tip(&session));
     session.changed = Changed::default();
     assert!(session.apply(edited(&session, "Poisson ν", |scene| scene.material.poisson = 0.9)).is_err());
@@ -83,8 +87,7 @@ fn a_refused_edit_leaves_the_session_unchanged() {
 
 #[test]
 fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let first = tip(&session);
     session.most_unknowns = 0;
     session.apply(with_force(&session, -200.0)).unwrap();
@@ -112,8 +115,7 @@ fn a_large_model_is_solved_in_the_background_and_a_cancelled_edit_is_taken_back(
 
 #[test]
 fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let first = session.scene().clone();
     session.most_unknowns = 0;
     for cells in [[16, 4], [8, 2]] {
@@ -137,8 +139,7 @@ fn a_cancelled_solve_is_not_displayed_after_the_next_edit() {
 #[test]
 fn a_model_that_is_refused_in_the_background_is_reported() {
     let folder = tempfile::tempdir().unwrap();
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     session.most_unknowns = 0;
     let first = session.scene().clone();
     let file = folder.path().join("none.msh").to_str().unwrap().to_owned();
@@ -171,8 +172,7 @@ fn an_exploded_motion_starts_again_with_other_settings() {
 /// After a grab the body is in the equilibrium before, with all its numbers: no search has taken their place.
 #[test]
 fn a_released_body_has_the_numbers_of_its_equilibrium() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let numbers = |session: &Session| {
         let simulation = session.simulation();
         let certificate = simulation.equilibrium().unwrap().certificate();
@@ -355,8 +355,7 @@ fn a_full_disk_leaves_file_and_copy_as_they_were() {
 /// A document whose body is too large to be displayed at once starts over, also where an edit makes the body small first.
 #[test]
 fn a_large_document_that_becomes_small_starts_over() {
-    let mut session = session(cantilever(-100.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-100.0));
     let large = large(6);
     let document = Document::new(source("large"), large.clone());
     session.apply(Edit::Restore(Box::new(Version { document, scene: large }))).unwrap();
@@ -394,9 +393,7 @@ fn a_large_body_without_an_equilibrium_comes_to_rest() {
     let mut scene = large(3).with_method(MethodKind::Warped);
     scene.set_force(0, [0.0, -1e6]).unwrap();
     let mut session = session(scene);
-    while session.iterates() {
-        session.iterate();
-    }
+    session.iterate_to_end();
     assert!(is_lost(session.simulation()), "{:?}", session.simulation().status());
     let begun = Instant::now();
     session.request_facts(false, false, false);
@@ -412,9 +409,7 @@ fn a_large_body_without_an_equilibrium_comes_to_rest() {
 fn a_large_result_is_certified_in_the_background() {
     let scene = large(3).with_method(MethodKind::Newton);
     let mut session = session(scene.clone());
-    while session.iterates() {
-        session.iterate();
-    }
+    session.iterate_to_end();
     let certificate = |session: &Session| session.simulation().equilibrium().unwrap().certificate();
     assert!(session.request_facts(false, false, false) && session.facts.certifying.is_some());
     assert_eq!(certificate(&session), None, "it is not computed between two frames");
@@ -428,9 +423,7 @@ fn a_large_result_is_certified_in_the_background() {
     assert!(session.model.quality.stress.mesh_error_percent.is_some());
     // An edit in the meantime keeps its own result.
     session.apply(with_force(&session, -1100.0)).unwrap();
-    while session.iterates() {
-        session.iterate();
-    }
+    session.iterate_to_end();
     session.request_facts(false, false, false);
     session.apply(with_force(&session, -1200.0)).unwrap();
     while session.iterates() || session.facts.certifying.is_some() {
@@ -446,8 +439,7 @@ fn a_large_result_is_certified_in_the_background() {
 /// A mesh of thousands of unknowns is made in the background, and iterates between frames once it is there.
 #[test]
 fn a_large_mesh_is_made_in_the_background() {
-    let mut session = session(cantilever(-1000.0));
-    session.solve(false);
+    let mut session = solved(cantilever(-1000.0));
     let (before, finer) = (session.simulation().system().dofs(), large(5));
     session.apply(Edit::Scene("Cells", Box::new(finer.clone()))).unwrap();
     assert!(session.is_working(), "the mesh is not made between two frames");

@@ -5,15 +5,10 @@ use crate::app::interface::*;
 /// Largest number of recent files that are offered.
 const RECENT: usize = 4;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Purpose {
-    Open,
-    Save,
-}
-
-#[derive(Debug)]
+#[derive(Default)]
 pub(crate) struct FileDialog {
-    pub purpose: Purpose,
+    /// `true` if the scene is saved to the chosen file, which is opened otherwise.
+    pub saves: bool,
     /// Action that waits until the scene has been saved.
     pub then: Option<Action>,
     folder: PathBuf,
@@ -28,19 +23,10 @@ pub(crate) struct FileDialog {
 
 impl FileDialog {
     /// Creates a dialog that starts in the folder of `near`; the action `then` waits for it.
-    pub(crate) fn new(purpose: Purpose, then: Option<Action>, near: Option<&Path>, name: &str) -> Self {
+    pub(crate) fn new(saves: bool, then: Option<Action>, near: Option<&Path>, name: &str) -> Self {
         let folder = near.and_then(Path::parent).filter(|folder| folder.is_dir());
         let folder = std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default();
-        let mut dialog = Self {
-            purpose,
-            then,
-            folder: PathBuf::new(),
-            text: name.to_owned(),
-            entries: Vec::new(),
-            message: None,
-            replaced: None,
-            is_new: true,
-        };
+        let mut dialog = Self { saves, then, text: name.to_owned(), is_new: true, ..Self::default() };
         dialog.enter(folder);
         dialog
     }
@@ -84,11 +70,11 @@ impl FileDialog {
         if path.extension().is_none() && !path.exists() {
             path.set_extension("toml");
         }
-        if self.purpose == Purpose::Open && !path.exists() {
+        if !self.saves && !path.exists() {
             self.refuse(fill!("There is no file %{file}", file = path.display()));
             return None;
         }
-        if self.purpose == Purpose::Save && path.exists() && self.replaced.as_ref() != Some(&path) {
+        if self.saves && path.exists() && self.replaced.as_ref() != Some(&path) {
             self.message = Some(fill!("%{file} exists: Replace overwrites it", file = path.display()));
             self.replaced = Some(path);
             return None;
@@ -98,9 +84,9 @@ impl FileDialog {
 
     /// Shows the dialog; returns the answer when there is one: the chosen file, or `None` if the user cancels.
     pub(crate) fn show(&mut self, ctx: &Context, recent: &[PathBuf]) -> Option<Option<PathBuf>> {
-        let (title, verb) = match self.purpose {
-            Purpose::Open => ("Open a scene", "Open"),
-            Purpose::Save => ("Save the scene", if self.replaced.is_some() { "Replace" } else { "Save" }),
+        let (title, verb) = match (self.saves, self.replaced.is_some()) {
+            (false, _) => ("Open a scene", "Open"),
+            (true, is_replaced) => ("Save the scene", if is_replaced { "Replace" } else { "Save" }),
         };
         let mut answer = None;
         let mut chosen: Option<PathBuf> = None;
@@ -121,7 +107,7 @@ impl FileDialog {
             let entered_key = edit.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
             ui.add_space(4.0);
             ScrollArea::vertical().max_height(280.0).auto_shrink([false, true]).show(ui, |ui| {
-                if self.purpose == Purpose::Open && !recent.is_empty() {
+                if !self.saves && !recent.is_empty() {
                     ui.label(RichText::new(tr("Recent files")).weak());
                     for path in recent.iter().take(RECENT) {
                         if ui.selectable_label(false, path.display().to_string()).clicked() {
@@ -164,7 +150,7 @@ impl FileDialog {
         });
         match chosen {
             Some(folder) if folder.is_dir() => self.enter(folder),
-            Some(path) if self.purpose == Purpose::Open => answer = Some(Some(path)),
+            Some(path) if !self.saves => answer = Some(Some(path)),
             _ => {}
         }
         if modal.should_close() && answer.is_none() {

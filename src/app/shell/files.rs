@@ -7,7 +7,7 @@ use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
 use crate::app::session::undo::UndoHistory;
-use crate::app::shell::file_dialog::{FileDialog, Purpose};
+use crate::app::shell::file_dialog::FileDialog;
 use crate::scene::STANDARD_INPUT;
 
 impl Lab {
@@ -77,7 +77,7 @@ impl Lab {
         if IS_PAGE {
             return self.save_there(ctx, Path::new(&name), then);
         }
-        self.dialog = Some(FileDialog::new(Purpose::Save, then, document.path(), &name));
+        self.dialog = Some(FileDialog::new(true, then, document.path(), &name));
     }
 
     /// Shows the file dialog, and processes its answer.
@@ -89,9 +89,7 @@ impl Lab {
         };
         let done = match answer {
             None => Ok(()),
-            Some(path) if dialog.purpose == Purpose::Open => {
-                self.try_open(Source { name: path, assignments: Vec::new() })
-            }
+            Some(path) if !dialog.saves => self.try_open(Source { name: path, assignments: Vec::new() }),
             Some(path) => self.save(ctx, &path, dialog.then.clone()),
         };
         match done {
@@ -201,7 +199,7 @@ impl Lab {
             }
             Action::OpenFile if IS_PAGE => files::choose(),
             Action::OpenFile => {
-                self.dialog = Some(FileDialog::new(Purpose::Open, None, self.desk.session.document().path(), ""))
+                self.dialog = Some(FileDialog::new(false, None, self.desk.session.document().path(), ""))
             }
             _ => self.requests.push(Request::Close),
         }

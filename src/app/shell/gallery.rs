@@ -32,10 +32,6 @@ fn new_beam() -> Scene {
     scene
 }
 
-fn clamped() -> Scene {
-    new_beam().clamp("left").force("right", [0.0, -1000.0]).probe("tip", "right")
-}
-
 /// Returns a beam on a pin and a roller with a force on its middle, each over a tenth of the height.
 fn on_two_supports() -> Scene {
     let scene = new_beam().point_support([0.5, -0.5], &[Axis::X, Axis::Y]).point_support([9.5, -0.5], &[Axis::Y]);
@@ -87,6 +83,7 @@ impl Gallery {
             ui.label(RichText::new(tr("or drop one on the window")).small().weak());
             ui.label(tr("New beam:"));
             let tip = tr("Start a beam of your own; the panel has its length and height");
+            let clamped = || new_beam().clamp("left").force("right", [0.0, -1000.0]).probe("tip", "right");
             for (name, scene) in [("clamped left", clamped as fn() -> Scene), ("on two supports", on_two_supports)] {
                 if ui.button(tr(name)).on_hover_text(tip).clicked() {
                     actions.push(Action::New(Box::new(scene())));

@@ -31,7 +31,6 @@ pub enum Request {
 }
 
 /// Model with its view and tools. The mode Learn has a desk of its own.
-#[derive(Debug)]
 pub struct Desk {
     /// Model.
     pub session: Session,
@@ -67,7 +66,6 @@ impl Desk {
 }
 
 /// Story while it is told.
-#[derive(Debug)]
 pub(super) struct Story {
     /// Time of the start, s.
     pub start: Option<f64>,

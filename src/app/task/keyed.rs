@@ -1,6 +1,5 @@
 //! Value of a scene that is computed in the background, and belongs to the scene that it was computed from.
 
-use std::fmt::Debug;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
@@ -18,10 +17,10 @@ pub(crate) type Computed<V> = Result<Option<V>, Sentence>;
 pub(crate) type Compute<V> = fn(&Scene, Observer<'_>, &(dyn Fn(V) + Sync)) -> Computed<V>;
 
 /// Kind of value of a scene that is computed in the background.
-pub(crate) trait Fact: Debug + 'static {
+pub(crate) trait Fact: 'static {
     /// Name of the computation.
     const NAME: &'static str;
-    type Value: Data + Debug;
+    type Value: Data;
     /// Returns the part of a scene that the value depends on: scenes with the same key have the same value.
     const KEY: fn(&Scene) -> Scene = Scene::clone;
     const COMPUTE: Compute<Self::Value>;
@@ -41,7 +40,6 @@ pub(crate) enum FactProgress<V> {
 macro_rules! facts {
     ($($(#[$about:meta])* $kind:ident $(by $key:path)? = $name:literal: $value:ty, $compute:expr;)*) => {$(
         $(#[$about])*
-        #[derive(Debug)]
         pub(crate) struct $kind;
 
         impl $crate::app::task::keyed::Fact for $kind {
@@ -101,7 +99,6 @@ pub(crate) fn work<F: Fact>(
 type FactTask<F> = Task<FactProgress<<F as Fact>::Value>, Computed<<F as Fact>::Value>>;
 
 /// Value of the scene that was last asked for, computed in the background.
-#[derive(Debug)]
 pub(crate) struct Keyed<F: Fact> {
     /// Scene that was asked for, and its key.
     asked: Option<(Scene, Scene)>,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::app::platform::IS_PAGE;
 use crate::app::prelude::*;
-use crate::app::task::thread::{Reporter, Task, Update};
+use crate::app::task::thread::{Reporter, Task};
 use crate::assembly::System;
 use crate::render::display_geometry::DisplayGeometry;
 use crate::scene::{Beam, Invalid, Material, MeshFile, SolverSettings};
@@ -29,7 +29,6 @@ pub(crate) struct Equations {
 }
 
 /// Simulation with everything that is displayed with it.
-#[derive(Debug)]
 pub(crate) struct Model {
     pub simulation: Simulation,
     /// Solution of linear theory on the same equations; `None` if it could not be set up, or has not been asked for.
@@ -129,7 +128,6 @@ impl Quality {
 }
 
 /// Part of a model that exists before a solve.
-#[derive(Debug)]
 pub(crate) enum ModelBase {
     Model(Box<Model>),
     Equations(Equations),
@@ -165,7 +163,6 @@ impl ModelBase {
 }
 
 /// Request for a solve.
-#[derive(Debug)]
 pub(crate) struct SolveRequest {
     pub scene: Scene,
     pub base: ModelBase,
@@ -191,7 +188,6 @@ pub(crate) enum Phase {
 pub(crate) type SolveOutcome = Result<Box<Model>, SimulationError>;
 
 /// Solve in a background thread, or on a web page after the current frame. Dropping it cancels it.
-#[derive(Debug)]
 pub(crate) struct BackgroundSolve {
     pub task: Task<Phase, SolveOutcome>,
     /// Scene that is solved.
@@ -206,21 +202,6 @@ impl BackgroundSolve {
         let scene = request.scene.clone();
         let work = move |reporter: &Reporter<_, _>| run(request, &|phase| reporter.report(phase));
         Ok(Self { task: Task::start("solve", work)?, scene, phase })
-    }
-
-    /// Returns the result of the solve, or the reason for which it has none; `None` until it has ended.
-    pub(crate) fn poll_end(&mut self) -> Option<Result<Box<Model>, Sentence>> {
-        loop {
-            return Some(match self.task.poll() {
-                Update::None => return None,
-                Update::Progress(phase) => {
-                    self.phase = phase;
-                    continue;
-                }
-                Update::Done(outcome) => outcome.map_err(|error| (&error).into()),
-                Update::Died => Err(sentence!("the solve ended unexpectedly: change a value to solve again")),
-            });
-        }
     }
 }
 

@@ -38,7 +38,6 @@ impl<T: Serialize + DeserializeOwned + Send + 'static> Data for T {}
 pub(crate) type Work<R, P, T> = fn(R, &Reporter<P, T>) -> T;
 
 /// Work in a background thread that reports its progress as `P` and ends with a `T`. Dropping it cancels it.
-#[derive(Debug)]
 pub(crate) struct Task<P, T> {
     receiver: Receiver<Update<P, T>>,
     is_cancelled: Arc<AtomicBool>,

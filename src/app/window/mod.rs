@@ -185,7 +185,7 @@ impl App {
     }
 
     fn run(self, display: Display) -> Result<(), AppError> {
-        let ended = platform::start::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
+        let ended = platform::page::run(display.0, self).map_err(|e| AppError::Window(e.to_string()))?;
         let Some(mut app) = ended else { return Ok(()) };
         app.keep_settings();
         app.error.map_or(Ok(()), Err)
@@ -288,7 +288,7 @@ impl App {
     fn open_graphics(&mut self, event_loop: &ActiveEventLoop, bare: BareWindow) {
         let (opening, display, ctx) = (self.opening.clone(), event_loop.owned_display_handle(), self.ctx.clone());
         let (window, adapter) = (bare.window.clone(), self.adapter.clone());
-        platform::start::open(async move {
+        platform::page::open(async move {
             let made = Graphics::new(&window, display, adapter.as_deref()).await;
             *opening.borrow_mut() = Some(made.map(|graphics| OpenWindow::new(graphics, bare, &ctx)));
             window.request_redraw();
@@ -421,7 +421,7 @@ impl ApplicationHandler for App {
             return;
         }
         let attributes = Window::default_attributes().with_title(self.lab.title());
-        let attributes = platform::start::window(attributes, event_loop, self.settings.size());
+        let attributes = platform::page::window(attributes, event_loop, self.settings.size());
         let window = match event_loop.create_window(attributes) {
             Ok(window) => Arc::new(window),
             Err(error) => return self.quit(event_loop, Some(AppError::Window(error.to_string()))),

@@ -39,20 +39,14 @@ pub(crate) struct CompareInput<'a> {
     pub chosen: Option<Setting>,
 }
 
-/// Named settings of all panes.
-struct Preset {
-    name: String,
-    settings: Vec<PaneSetting>,
-    tip: &'static str,
-    /// Reason for which the preset is disabled.
-    disabled: Option<&'static str>,
-}
+/// Named settings of all panes, with a tooltip, and the reason for which they are disabled.
+type Preset = (String, Vec<PaneSetting>, &'static str, Option<&'static str>);
 
 /// Change of a pane by its header: its new setting; `None` closes the pane.
 type PaneChange = Option<Option<PaneSetting>>;
 
 /// Panes with equilibria or with motions of one scene.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Compare {
     /// `true` if the panes show motions.
     pub in_motion: bool,
@@ -239,7 +233,7 @@ impl Compare {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let present: Vec<PaneSetting> = self.panes.iter().map(|pane| pane.setting).collect();
-                for Preset { name, settings, tip, disabled } in self.presets(input) {
+                for (name, settings, tip, disabled) in self.presets(input) {
                     let is_chosen = disabled.is_none() && present == settings;
                     let button = ui.add_enabled(disabled.is_none(), option_button(is_chosen, name));
                     let reason = tr(disabled.unwrap_or_default());
@@ -283,22 +277,22 @@ impl Compare {
             ),
         };
         let mut presets = vec![
-            Preset { name, settings: first, tip, disabled: None },
-            Preset {
-                name: join(elements.iter().map(|element| element.id()).collect()),
-                settings: elements.iter().map(of_element).collect(),
-                tip: tip_of_elements,
-                disabled: (elements.len() < 2).then_some("The mesh of this file can have one element only"),
-            },
+            (name, first, tip, None),
+            (
+                join(elements.iter().map(|element| element.id()).collect()),
+                elements.iter().map(of_element).collect(),
+                tip_of_elements,
+                (elements.len() < 2).then_some("The mesh of this file can have one element only"),
+            ),
         ];
         if !self.in_motion {
-            presets.push(Preset {
-                name: tr("current | fastest").to_owned(),
-                settings: vec![PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()],
-                tip: "The current setting next to the fastest that meets both limits of How fast, in Measure",
-                disabled: (input.chosen.is_none())
+            presets.push((
+                tr("current | fastest").to_owned(),
+                vec![PaneSetting::default(), input.chosen.map(PaneSetting::from).unwrap_or_default()],
+                "The current setting next to the fastest that meets both limits of How fast, in Measure",
+                (input.chosen.is_none())
                     .then_some("Measure how fast the settings are first: the fastest is compared with the current one"),
-            });
+            ));
         }
         presets
     }

@@ -16,7 +16,7 @@ use crate::app::viewport::projection::DrawnBody;
 use crate::exact_beam::error_percent;
 
 /// Scene with settings of its own, compared with others.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Pane {
     /// Settings of the pane.
     pub setting: PaneSetting,

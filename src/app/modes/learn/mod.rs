@@ -31,7 +31,6 @@ const NAVIGATION: f32 = 420.0;
 /// Largest number of elements that are painted one by one.
 const MAX_ELEMENTS: usize = 3000;
 
-#[derive(Debug)]
 pub(crate) struct Learn {
     /// Number of the card that was displayed last, from 0.
     pub card: usize,

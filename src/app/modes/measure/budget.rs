@@ -10,7 +10,6 @@ use crate::scene::limits::BUDGET_MS;
 use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
 
 /// The study of the scene, and the largest error and time that a setting may have.
-#[derive(Debug)]
 pub(crate) struct Budget {
     study: Keyed<facts::StudyFact>,
     /// Scene that is being measured.

@@ -7,7 +7,7 @@ pub(crate) mod load_curve;
 use self::budget::Budget;
 use super::*;
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Measure {
     limits: Keyed<facts::LimitsFact>,
     curve: Keyed<facts::CurveFact>,

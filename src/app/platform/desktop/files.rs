@@ -22,7 +22,6 @@ pub(crate) fn arrived() -> Option<PathBuf> {
 
 /// File under the first free name of its folder. It is created at once, so that no other recording and no other window
 /// takes the name. Dropping it removes the file if nothing has been written to it.
-#[derive(Debug)]
 pub(crate) struct NewFile(PathBuf);
 
 impl NewFile {
@@ -72,7 +71,7 @@ mod tests {
         assert_eq!(create().path(), folder.join("warpbeam-001.gif"));
         let _first = create();
         assert_eq!(create().path(), folder.join("warpbeam-003.gif"));
-        let error = NewFile::create(&folder.join("none"), "gif").unwrap_err();
+        let error = NewFile::create(&folder.join("none"), "gif").err().unwrap();
         assert!(error.to_string().contains("none/warpbeam-001.gif"), "{error}");
     }
 }

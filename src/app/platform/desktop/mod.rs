@@ -4,8 +4,4 @@ pub(crate) mod clipboard;
 pub(crate) mod files;
 pub(crate) mod page;
 pub(crate) mod settings;
-pub(crate) mod start;
 pub(crate) mod work;
-
-/// `true` if the program runs on a web page.
-pub(crate) const IS_PAGE: bool = false;

@@ -19,7 +19,6 @@ pub(crate) fn read(file: &Path) -> std::io::Result<String> {
 }
 
 /// File for a copy, locked during the lifetime of this value.
-#[derive(Debug)]
 pub(crate) struct CopyPlace {
     pub(crate) file: PathBuf,
     _lock: File,

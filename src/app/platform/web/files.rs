@@ -129,7 +129,6 @@ pub(crate) fn arrived() -> Option<PathBuf> {
 }
 
 /// Name of a download. A page has no folder: the browser changes a name that is taken.
-#[derive(Debug)]
 pub(crate) struct NewFile(PathBuf);
 
 impl NewFile {

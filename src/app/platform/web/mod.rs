@@ -11,11 +11,7 @@ pub(crate) mod clipboard;
 pub(crate) mod files;
 pub(crate) mod page;
 pub(crate) mod settings;
-pub(crate) mod start;
 pub(crate) mod work;
-
-/// `true` if the program runs on a web page.
-pub(crate) const IS_PAGE: bool = true;
 
 thread_local! {
     static PROXY: RefCell<Option<EventLoopProxy<()>>> = RefCell::default();

@@ -1,4 +1,5 @@
-//! Page around the window: its address, its title, its messages, and the report that tests read.
+//! Page around the window: its canvas with the event loop, its address, its title, its messages, and the report that tests
+//! read.
 
 use std::cell::{Cell, RefCell};
 
@@ -8,9 +9,11 @@ use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use wasm_bindgen::prelude::*;
 use web_sys::{Blob, DragEvent, Event, UrlSearchParams};
-use winit::event_loop::EventLoopProxy;
-use winit::platform::web::WindowExtWebSys as _;
-use winit::window::Window;
+use winit::application::ApplicationHandler;
+use winit::error::EventLoopError;
+use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy};
+use winit::platform::web::{EventLoopExtWebSys as _, WindowAttributesExtWebSys as _, WindowExtWebSys as _};
+use winit::window::{Window, WindowAttributes};
 
 use crate::app::platform::web::{self, files};
 
@@ -97,7 +100,7 @@ pub(crate) fn link(toml: &str) -> String {
 }
 
 /// Receives dropped files, answers requests for a report, and wakes the event loop from now on.
-pub(super) fn listen(proxy: EventLoopProxy<()>) {
+fn listen(proxy: EventLoopProxy<()>) {
     web::set_proxy(proxy);
     let Some(document) = web::document() else { return };
     let over = Closure::<dyn FnMut(DragEvent)>::new(|event: DragEvent| event.prevent_default());
@@ -192,4 +195,24 @@ fn set(name: &str, function: &JsValue) {
     if let Ok(object) = js_sys::Reflect::get(&js_sys::global(), &"warpbeam".into()) {
         let _ = js_sys::Reflect::set(&object, &name.into(), function);
     }
+}
+
+/// Returns the attributes of a window on the page's canvas, whose size the page sets.
+pub(crate) fn window(attributes: WindowAttributes, _: &ActiveEventLoop, _: [f32; 2]) -> WindowAttributes {
+    attributes.with_canvas(web::canvas())
+}
+
+/// Runs `opening` of the graphics device while the page goes on.
+pub(crate) fn open(opening: impl Future<Output = ()> + 'static) {
+    wasm_bindgen_futures::spawn_local(opening);
+}
+
+/// Starts the event loop, which runs as long as the page is open.
+pub(crate) fn run<A: ApplicationHandler + 'static>(
+    event_loop: EventLoop<()>,
+    app: A,
+) -> Result<Option<A>, EventLoopError> {
+    listen(event_loop.create_proxy());
+    event_loop.spawn_app(app);
+    Ok(None)
 }

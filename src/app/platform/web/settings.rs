@@ -19,7 +19,6 @@ pub(crate) fn read(file: &Path) -> io::Result<String> {
 }
 
 /// Item for a copy.
-#[derive(Debug)]
 pub(crate) struct CopyPlace {
     pub(crate) file: PathBuf,
 }

@@ -2,7 +2,6 @@
 //! data. Work that is not data is done between two frames.
 
 use std::cell::RefCell;
-use std::fmt::{self, Debug, Formatter};
 use std::io;
 use std::rc::Rc;
 
@@ -74,12 +73,6 @@ pub(crate) fn end(worker: &Worker) {
 impl Drop for Worker {
     fn drop(&mut self) {
         end(self);
-    }
-}
-
-impl Debug for Worker {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str("worker")
     }
 }
 
