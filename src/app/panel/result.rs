@@ -63,10 +63,8 @@ fn search_rows(row: &mut ResultRow<'_>, session: &Session) {
     let (factor, steps) = (search.load_factor(), search.load_steps());
     if steps > 1 || factor != 1.0 {
         let part = percent(100.0 * factor);
-        let text = match factor == 1.0 {
-            true => steps.to_string(),
-            false => fill!("%{n}, at %{part} of the load", n = steps, part),
-        };
+        let text =
+            if factor == 1.0 { steps.to_string() } else { fill!("%{n}, at %{part} of the load", n = steps, part) };
         row("Load steps", text, "Number of steps in which the load is applied");
     }
     let word = stability(simulation).map_or(UNKNOWN, |stable| if stable { "stable" } else { "unstable" });

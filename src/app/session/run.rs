@@ -29,7 +29,6 @@ pub struct Run {
 
 /// Result of a pane's solve from rest.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct PaneEnd {
     /// Final status; [`Status::Running`] if it was stopped after the setting's number of iterations.
     pub status: Status,

@@ -59,10 +59,9 @@ impl Gallery {
         if !self.is_open {
             self.pictures.clear();
         }
-        opened.response.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::ComboBox, true, tr("Scene"));
-            info.current_text_value = Some(tr(&session.scene().name).to_owned());
-            info
+        opened.response.widget_info(|| WidgetInfo {
+            current_text_value: Some(tr(&session.scene().name).to_owned()),
+            ..WidgetInfo::labeled(Role::ComboBox, true, tr("Scene"))
         });
         opened.response.on_hover_text(tr(&session.scene().about));
     }

@@ -58,24 +58,20 @@ pub(crate) use facts;
 pub(crate) struct SentScene(pub Scene);
 
 /// Text of a scene, and of its mesh file.
-#[derive(Serialize, Deserialize)]
-struct SceneParts {
-    toml: String,
-    mesh: Option<String>,
-}
+type SceneParts = (String, Option<String>);
 
 impl From<SentScene> for SceneParts {
     fn from(SentScene(scene): SentScene) -> Self {
         let mesh = scene.mesh.as_ref().and_then(|mesh| mesh.text.as_deref()).map(str::to_owned);
         // A scene that cannot be written gives an empty text, which the receiver refuses.
-        Self { toml: scene.to_toml().unwrap_or_default(), mesh }
+        (scene.to_toml().unwrap_or_default(), mesh)
     }
 }
 
 impl TryFrom<SceneParts> for SentScene {
     type Error = SceneError;
 
-    fn try_from(SceneParts { toml, mesh: text }: SceneParts) -> Result<Self, SceneError> {
+    fn try_from((toml, text): SceneParts) -> Result<Self, SceneError> {
         let mut scene = Scene::from_toml(&toml)?;
         if let (Some(mesh), Some(text)) = (&mut scene.mesh, text) {
             mesh.element = mesh.element.or_else(|| Mesh::gmsh_element(&text));

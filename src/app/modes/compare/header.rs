@@ -138,7 +138,7 @@ fn result(ui: &mut Ui, name: &str, pane: &Pane, input: &CompareInput<'_>) {
     painter.galley(at.min, galley, ink);
     let error = error.map_or_else(String::new, |error| fill!("error %{error}, ", error = percent(error)));
     let text = joined(strained.into_iter().chain([text]));
-    let spoken = format!("{name}: {}: {error}{text}", setting.text());
+    let spoken = format!("{name}: {setting}: {error}{text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     let error_tip = error_tip(input.reference, input.session.facts.reference.failure(input.scene));
     response.on_hover_text(format!("{text}\n{error_tip}\n{}", tr("Time and iterations: of a solve from rest")));
@@ -282,10 +282,9 @@ fn combo(ui: &mut Ui, pane: &str, what: &str, text: &str, width: f32, menu: &mut
     let size = vec2(width, ui.spacing().interact_size.y);
     let inside = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| combo.show_ui(ui, menu));
     let response = inside.inner.response;
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ComboBox, true, &label);
-        info.current_text_value = Some(text.to_owned());
-        info
+    response.widget_info(|| WidgetInfo {
+        current_text_value: Some(text.to_owned()),
+        ..WidgetInfo::labeled(Role::ComboBox, true, &label)
     });
 }
 

@@ -5,9 +5,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use super::*;
-use crate::app::language;
 use crate::element::ELEMENTS;
-use crate::format::count;
 
 /// Smallest and largest number of panes.
 pub(super) const PANES: std::ops::RangeInclusive<usize> = 2..=4;
@@ -29,30 +27,21 @@ pub struct PaneSetting {
 
 /// Error in the text form of panes.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
 pub enum PaneSettingError {
     /// A part is not recognized.
     #[error(
         "expected a method ({}), an element ({}), cells as in 10x2 or a number of iterations, got \u{201c}{part}\u{201d}",
         METHODS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
         ELEMENTS.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", "),
+        part = .0,
     )]
-    Unknown {
-        /// Text of the part.
-        part: String,
-    },
+    Unknown(String),
     /// A part repeats a kind of setting.
-    #[error("expected one method, element, mesh and number of iterations, got another one: \u{201c}{part}\u{201d}")]
-    Twice {
-        /// Text of the part.
-        part: String,
-    },
+    #[error("expected one method, element, mesh and number of iterations, got another one: \u{201c}{0}\u{201d}")]
+    Twice(String),
     /// Too few or too many panes.
-    #[error("expected {} to {} panes, as in linear,warped,newton, got {got}", PANES.start(), PANES.end())]
-    Count {
-        /// Number of panes.
-        got: usize,
-    },
+    #[error("expected {} to {} panes, as in linear,warped,newton, got {got}", PANES.start(), PANES.end(), got = .0)]
+    Count(usize),
 }
 
 impl PaneSetting {
@@ -81,22 +70,6 @@ impl PaneSetting {
         own.dynamics.integrator = self.integrator.unwrap_or(scene.dynamics.integrator);
         own
     }
-
-    /// Returns the name of the settings in the window.
-    pub(super) fn text(&self) -> String {
-        self.named(tr, |n| language::count(n, "iteration"))
-    }
-
-    /// Joins the names of the given values.
-    fn named(&self, tr: fn(&'static str) -> &'static str, count: fn(u32) -> String) -> String {
-        let method = self.method.map(|method| tr(method.id()).to_owned());
-        let element = self.element.map(|element| element.id().to_owned());
-        let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
-        let integrator = self.integrator.map(|integrator| tr(integrator.id()).to_owned());
-        let parts: Vec<_> =
-            [method, element, cells, self.iterations.map(count), integrator].into_iter().flatten().collect();
-        if parts.is_empty() { tr("the scene").to_owned() } else { parts.join(" ") }
-    }
 }
 
 impl From<Setting> for PaneSetting {
@@ -113,7 +86,13 @@ impl From<Setting> for PaneSetting {
 
 impl fmt::Display for PaneSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.named(|text| text, |n| count(n, "iteration")))
+        let method = self.method.map(|method| tr(method.id()).to_owned());
+        let element = self.element.map(|element| element.id().to_owned());
+        let cells = self.cells.map(|[along, across]| format!("{along}×{across}"));
+        let iterations = self.iterations.map(|n| count(n, "iteration"));
+        let integrator = self.integrator.map(|integrator| tr(integrator.id()).to_owned());
+        let parts: Vec<_> = [method, element, cells, iterations, integrator].into_iter().flatten().collect();
+        f.write_str(&if parts.is_empty() { tr("the scene").to_owned() } else { parts.join(" ") })
     }
 }
 
@@ -137,10 +116,10 @@ impl FromStr for PaneSetting {
                 (_, Some(element), ..) => setting.element.replace(element).is_some(),
                 (_, _, Some(cells), _) => setting.cells.replace(cells).is_some(),
                 (.., Some(iterations)) => setting.iterations.replace(iterations).is_some(),
-                _ => return Err(PaneSettingError::Unknown { part: part.to_owned() }),
+                _ => return Err(PaneSettingError::Unknown(part.to_owned())),
             };
             if is_second {
-                return Err(PaneSettingError::Twice { part: part.to_owned() });
+                return Err(PaneSettingError::Twice(part.to_owned()));
             }
         }
         Ok(setting)
@@ -153,7 +132,7 @@ impl FromStr for PaneSetting {
 /// [`PaneSettingError`].
 pub fn parse_panes(text: &str) -> Result<Vec<PaneSetting>, PaneSettingError> {
     let settings = text.split(',').map(str::parse).collect::<Result<Vec<PaneSetting>, _>>()?;
-    if PANES.contains(&settings.len()) { Ok(settings) } else { Err(PaneSettingError::Count { got: settings.len() }) }
+    if PANES.contains(&settings.len()) { Ok(settings) } else { Err(PaneSettingError::Count(settings.len())) }
 }
 
 #[cfg(test)]
@@ -183,14 +162,14 @@ mod tests {
     fn invalid_pane_settings_are_refused_with_the_expected_form() {
         for text in ["", "wraped", "t5", "10x", "0", "-1", "1.5"] {
             let error = text.parse::<PaneSetting>().unwrap_err();
-            assert_eq!(error, PaneSettingError::Unknown { part: text.to_owned() });
+            assert_eq!(error, PaneSettingError::Unknown(text.to_owned()));
             assert!(error.to_string().contains("warped") && error.to_string().contains("t6"), "{error}");
         }
         for text in ["warped:newton", "t3:t6", "2x1:4x1", "3:4"] {
-            assert!(matches!(text.parse::<PaneSetting>(), Err(PaneSettingError::Twice { .. })), "{text}");
+            assert!(matches!(text.parse::<PaneSetting>(), Err(PaneSettingError::Twice(_))), "{text}");
         }
         for (text, got) in [("warped", 1), ("t3,t6,q4,t3,t6", 5)] {
-            assert_eq!(parse_panes(text), Err(PaneSettingError::Count { got }), "{text}");
+            assert_eq!(parse_panes(text), Err(PaneSettingError::Count(got)), "{text}");
         }
     }
 }

@@ -14,17 +14,11 @@ use crate::model::Invalid;
 use crate::scene::{self, Scene, SceneError, Source};
 use crate::sentence::sentence;
 
-/// Files received from the user.
-#[derive(Default)]
-struct Store {
-    /// Text of each file by its name.
-    texts: BTreeMap<String, String>,
-    /// Scene file to be opened next.
-    arrived: Option<PathBuf>,
-}
-
 thread_local! {
-    static STORE: RefCell<Store> = RefCell::default();
+    /// Text of each file received from the user, by its name.
+    static TEXTS: RefCell<BTreeMap<String, String>> = RefCell::default();
+    /// Scene file to be opened next.
+    static ARRIVED: RefCell<Option<PathBuf>> = RefCell::default();
 }
 
 /// Opens a built-in scene, or a scene file that the user has chosen, with its mesh file.
@@ -47,7 +41,7 @@ pub(crate) fn open(source: &Source) -> Result<Scene, SceneError> {
 }
 
 fn stored(name: &str) -> Option<String> {
-    STORE.with_borrow(|store| store.texts.get(name).cloned())
+    TEXTS.with_borrow(|texts| texts.get(name).cloned())
 }
 
 /// Returns the text of a scene file that the user has chosen.
@@ -61,7 +55,7 @@ pub(crate) fn text(source: &Source) -> Option<String> {
 
 /// Adds the text of a scene that came with the page's address, and returns its name.
 pub(crate) fn add(name: &str, text: String) -> PathBuf {
-    STORE.with_borrow_mut(|store| store.texts.insert(name.to_owned(), text));
+    TEXTS.with_borrow_mut(|texts| texts.insert(name.to_owned(), text));
     PathBuf::from(name)
 }
 
@@ -116,16 +110,16 @@ pub(super) fn receive(list: &FileList) {
             if scene.is_none() && name.ends_with(".toml") {
                 scene = Some(PathBuf::from(&name));
             }
-            STORE.with_borrow_mut(|store| store.texts.insert(name, text));
+            TEXTS.with_borrow_mut(|texts| texts.insert(name, text));
         }
-        STORE.with_borrow_mut(|store| store.arrived = scene);
+        ARRIVED.set(scene);
         web::wake();
     });
 }
 
 /// Returns a file chosen in the browser or dropped on the page.
 pub(crate) fn arrived() -> Option<PathBuf> {
-    STORE.with_borrow_mut(|store| store.arrived.take())
+    ARRIVED.take()
 }
 
 /// Name of a download. A page has no folder: the browser changes a name that is taken.
