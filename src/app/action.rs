@@ -44,7 +44,6 @@ pub(crate) enum Action {
     /// Fit the camera to the whole body.
     Fit,
     Toggle(Toggle),
-    /// Colour the body with a field.
     Color(Field),
     ToggleTheme,
     ToggleLanguage,

@@ -8,7 +8,6 @@ use crate::app::task::thread::Update;
 /// Time after which the meshing of a body that is solved between two frames is shown.
 const SOON: Duration = Duration::from_millis(500);
 
-/// Background work of a session.
 #[derive(Default)]
 pub(super) struct Background {
     solve: Option<Box<BackgroundSolve>>,

@@ -12,18 +12,16 @@ pub(crate) mod recovery;
 pub(crate) mod run;
 #[cfg(test)]
 mod tests;
-pub(crate) mod undo;
 
 use std::sync::LazyLock;
 
 use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
-pub(crate) use crate::app::session::edit::{Changed, Edit, object_name};
+pub(crate) use crate::app::session::edit::{Changed, Edit, UndoHistory, Version, object_name};
 use crate::app::session::facts::{Facts, Live};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
-use crate::app::session::undo::{UndoHistory, Version};
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::state::State;
@@ -265,7 +263,6 @@ impl Session {
         self.fallback().unwrap_or(&self.model.simulation)
     }
 
-    /// Starts or stops iterating.
     pub(crate) fn set_running(&mut self, running: bool) {
         self.running = running;
         if !running {

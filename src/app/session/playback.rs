@@ -13,7 +13,6 @@ const MAX_BYTES: usize = 64 << 20;
 /// Shortest playing time between two recorded moments, s: one frame at 60 Hz, less rounding.
 const BETWEEN_MOMENTS: f64 = 1.0 / 61.0;
 
-/// Playback of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct Playback {
     pub clock: RealTimeClock,
@@ -59,7 +58,6 @@ impl Playback {
         self.history.record(simulation);
     }
 
-    /// Records the current moment of the motion.
     fn keep_moment(&mut self, simulation: &Simulation) {
         self.history.keep_moment(simulation, MAX_BYTES);
         self.kept = self.played;
@@ -149,7 +147,6 @@ const MAX_MOMENTS: usize = 900;
 pub(crate) struct MotionSample {
     /// Simulated time, s.
     pub time: f64,
-    /// Energy ledger.
     pub ledger: Ledger,
     /// Position of the first probe, m.
     pub position: Vector2<f64>,

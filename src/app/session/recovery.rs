@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::*;
 use crate::app::platform::settings::{self, CopyPlace};
-pub use crate::app::session::undo::Version as Unsaved;
+pub use crate::app::session::edit::Version as Unsaved;
 
 /// Largest number of windows that are open or have crashed.
 const PLACES: usize = 100;

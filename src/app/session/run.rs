@@ -131,12 +131,10 @@ impl Run {
         matches!(self.place, RunPlace::Away(_))
     }
 
-    /// Returns `true` if a body moves.
     pub(crate) fn moves(&self) -> bool {
         self.model().is_some_and(|model| !model.simulation.is_at_rest())
     }
 
-    /// Returns the condition of the displayed state.
     pub(crate) fn condition(&self) -> Condition {
         let status = self.end.as_ref().map(|end| &end.status);
         let status = status.or_else(|| Some(self.displayed()?.simulation.status()));

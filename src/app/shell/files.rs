@@ -3,10 +3,9 @@
 
 use super::*;
 use crate::app::platform::{IS_PAGE, files, page};
-use crate::app::session::Edit;
 use crate::app::session::document::Document;
 use crate::app::session::recovery::Unsaved;
-use crate::app::session::undo::UndoHistory;
+use crate::app::session::{Edit, UndoHistory};
 use crate::app::shell::file_dialog::FileDialog;
 use crate::scene::STANDARD_INPUT;
 

@@ -72,7 +72,6 @@ pub(super) struct Story {
     /// Index of the current part, and the time until its end, s.
     pub part: usize,
     pub left: f64,
-    /// `true` if each part is a still.
     pub is_still: bool,
     /// `true` if the body is compared with the reference solution: under the scene's load.
     pub compares: bool,

@@ -26,12 +26,10 @@ pub(crate) trait Fact: 'static {
     const COMPUTE: Compute<Self::Value>;
 }
 
-/// Progress report of a computation.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum FactProgress<V> {
     /// Fraction done, and what is computed now, if it is something else than before.
     Now(f64, Option<Sentence>),
-    /// Value so far.
     SoFar(V),
 }
 
@@ -91,7 +89,6 @@ pub(crate) fn work<F: Fact>(
     (F::COMPUTE)(&scene.0, &observe, &|value| _ = reporter.report(FactProgress::SoFar(value)))
 }
 
-/// Running computation of a value.
 type FactTask<F> = Task<FactProgress<<F as Fact>::Value>, Computed<<F as Fact>::Value>>;
 
 /// Value of the scene that was last asked for, computed in the background.
@@ -138,7 +135,6 @@ impl<F: Fact> Keyed<F> {
         self.asked.as_ref().is_some_and(|(asked, key)| asked == scene || *key == Self::key(scene))
     }
 
-    /// Removes all values.
     pub(crate) fn clear(&mut self) {
         (self.asked, self.computed, self.previous) = (None, None, None);
         self.cancel();
@@ -157,7 +153,6 @@ impl<F: Fact> Keyed<F> {
         self.computed = Some(Ok(Some(value)));
     }
 
-    /// Cancels the running computation.
     fn cancel(&mut self) {
         (self.done, self.so_far) = Default::default();
         if let Some((task, is_current)) = &mut self.running {

@@ -80,7 +80,6 @@ pub(crate) struct Quality {
     of: Option<(Vec<Vector2<f64>>, Material)>,
     pub stress: StressResult,
     pub deformation: Deformation,
-    /// Number of elements.
     elements: usize,
 }
 
@@ -162,7 +161,6 @@ impl ModelBase {
     }
 }
 
-/// Request for a solve.
 pub(crate) struct SolveRequest {
     pub scene: Scene,
     pub base: ModelBase,
@@ -174,7 +172,6 @@ pub(crate) struct SolveRequest {
     pub is_displayed: bool,
 }
 
-/// Current phase of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
     Meshing,

@@ -21,7 +21,6 @@ pub(crate) const QUIET_POLL: Duration = Duration::from_millis(200);
 pub(crate) enum Update<P, T> {
     /// No update since the last poll.
     None,
-    /// Progress report.
     Progress(P),
     /// Result; no more updates follow.
     Done(T),

@@ -48,7 +48,6 @@ type PaneChange = Option<Option<PaneSetting>>;
 /// Panes with equilibria or with motions of one scene.
 #[derive(Default)]
 pub(crate) struct Compare {
-    /// `true` if the panes show motions.
     pub in_motion: bool,
     pub panes: Vec<Pane>,
     /// Camera of all panes; `None` before the first frame.
@@ -58,7 +57,6 @@ pub(crate) struct Compare {
     /// Largest displacement, m: of the results, or of the motions so far, because an automatic magnification that followed
     /// a motion would hide it.
     largest_displacement: f64,
-    /// Clock of the motions.
     pub clock: RealTimeClock,
     /// Bounding box of all states of the motions so far, m.
     swept: Option<Box2>,
@@ -84,7 +82,6 @@ fn settings(in_motion: bool) -> Vec<PaneSetting> {
 }
 
 impl Compare {
-    /// Creates panes of equilibria or of motions.
     pub(crate) fn new(in_motion: bool) -> Self {
         Self {
             in_motion,

@@ -20,9 +20,7 @@ pub(crate) struct Card {
 /// Display of a card next to its text and over the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CardDisplay {
-    /// Growth of the area.
     Area,
-    /// Frame of every triangle.
     Frames,
     /// Triangles apart from each other, rotated back.
     Exploded,

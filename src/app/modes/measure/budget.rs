@@ -12,7 +12,6 @@ use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
 /// The study of the scene, and the largest error and time that a setting may have.
 pub(crate) struct Budget {
     study: Keyed<facts::StudyFact>,
-    /// Scene that is being measured.
     measured: Option<Scene>,
     /// `true` if the study is that of a scene which was open before.
     is_hidden: bool,

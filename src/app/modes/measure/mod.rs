@@ -54,7 +54,6 @@ impl Measure {
         }
     }
 
-    /// Shows a tab.
     pub(crate) fn show(&mut self, ui: &mut Ui, session: &Session, view: &ViewOptions, actions: &mut Vec<Action>) {
         let scene = session.scene();
         let Some(tab) = view.measured(scene) else { return };

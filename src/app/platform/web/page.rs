@@ -25,7 +25,6 @@ const MAX_SCENE_BYTES: usize = 1 << 20;
 const FRAGMENT: &str = "scene=";
 
 thread_local! {
-    /// Number of frames drawn.
     static FRAMES: Cell<u64> = const { Cell::new(0) };
     /// State of the window after the last frame, JSON.
     static REPORT: RefCell<String> = RefCell::default();
@@ -42,7 +41,6 @@ pub(crate) struct Address {
     pub scene: Option<String>,
     /// TOML text of a scene, or the reason for which the link has none.
     pub toml: Option<Result<String, String>>,
-    /// Language of the window.
     pub language: Option<String>,
     /// Number of a card of Learn, from 1.
     pub card: Option<usize>,

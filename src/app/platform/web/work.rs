@@ -45,7 +45,6 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
 pub(crate) enum Received {
     /// More messages follow.
     Progress,
-    /// The request is done.
     Done,
     /// The message cannot be read, and the worker is ended.
     Unreadable,
