@@ -10,7 +10,8 @@
 //! - the **inertia is consistent**: the number of negative eigenvalues of the tangent matrix changes by one exactly
 //!   where dλ/ds changes its sign, and nowhere else. A step that left its branch violates this.
 //!
-//! Otherwise the step is tried with the stress of the tangent matrix from before each correction, and then shortened. An inertia that stays inconsistent in the smallest step is a bifurcation.
+//! Otherwise the step is shortened. Failed corrections are first tried again with the other stress in the tangent matrix, if
+//! the equations allow it. An inertia that stays inconsistent in the smallest step is a bifurcation.
 
 /// Equations r(x, λ) = 0 of a path.
 pub(crate) trait PathEquations {
@@ -553,10 +554,11 @@ impl<S: Clone> Continuation<S> {
             at = factor;
         }
         equations.advance(&mut state, &from.tangent, step, [at, factor]);
-        let first = (MAX_FIRST_CORRECTION * step.abs()).max(if goal.is_some() { RESIDUE } else { 0.0 });
-        let converged = (CONVERGED * step.abs()).max(if goal.is_some() { 1e-4 * RESIDUE } else { 0.0 });
+        let least = if goal.is_some() { RESIDUE } else { 0.0 };
+        let first = (MAX_FIRST_CORRECTION * step.abs()).max(least);
+        let converged = (CONVERGED * step.abs()).max(1e-4 * least);
         let (mut last, mut contraction): (Option<f64>, f64) = (None, 1e-3);
-        // Before the first correction the start of the step, then the state whose rotations the correction has not changed yet.
+        // The start of the step; after a correction, the corrected state with the rotations before.
         let mut stressed = self.stress_lags.then(|| from.state.clone());
         for _ in 0..MAX_CORRECTIONS {
             self.count()?;
@@ -574,7 +576,6 @@ impl<S: Clone> Continuation<S> {
                 return None;
             }
             equations.advance(&mut state, correction, 1.0, [factor, factor + by]);
-            stressed = stressed.map(|_| state.clone());
             factor += by;
             // The prediction stretches a slender body, and a stretched body has another tangent: one small correction does
             // not prove convergence.
@@ -588,6 +589,7 @@ impl<S: Clone> Continuation<S> {
                 let point = ContinuationPoint { state, factor, modes, tangent, slope, derivatives: Vec::new() };
                 return (cosine.abs() >= MIN_COSINE).then_some((point, contraction, cosine.abs()));
             }
+            stressed = stressed.map(|_| state.clone());
         }
         None
     }

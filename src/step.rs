@@ -97,12 +97,14 @@ pub enum Operation {
 }
 
 /// Rotations with which a state is linearized.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RotationUpdate {
+#[derive(Clone, Copy, Debug)]
+pub enum RotationUpdate<'a> {
     /// New rotations: the polar factors of the displacement's gradients.
     Follow,
     /// The rotations that the state already has.
     Keep,
+    /// New rotations, but in G the trace of strain of this state, at its rotations.
+    FollowStressed(&'a State),
 }
 
 /// Strain, matrix and load of a linearization.
@@ -163,7 +165,7 @@ impl Iteration<'_> {
 
     /// Computes the rotations R, if they follow the displacement, f_int = Σ R Ke (Rᵀ x − X), A = Σ R Ke Rᵀ, f_ext and the
     /// relative residual.
-    pub(crate) fn linearize(&mut self, rotations: RotationUpdate, wanted: Linearization) {
+    pub(crate) fn linearize(&mut self, rotations: RotationUpdate<'_>, wanted: Linearization) {
         let Self { problem, state, forces, workspace, timings } = self;
         let Linearization { kinematics, tangent, load_factor } = wanted;
         let matrix = &mut workspace.linear.matrix;
@@ -172,14 +174,15 @@ impl Iteration<'_> {
             match rotations {
                 RotationUpdate::Follow => problem.update_and_linearize(state, kinematics, forces, sum),
                 RotationUpdate::Keep => problem.linearize(state, forces, sum),
+                RotationUpdate::FollowStressed(other) => problem.linearize_stressed(state, other, forces, sum),
             }
             if let Some(tangent) = tangent {
                 problem.add_load_stiffness(state, tangent, load_factor, matrix);
             }
             problem.balance(state, kinematics, load_factor, forces);
         });
-        // Without a tangent the matrix is one of an earlier state.
-        workspace.tangent = tangent;
+        // Without a tangent the matrix is one of an earlier state; with the strain of another state it is none of this one.
+        workspace.tangent = tangent.filter(|_| !matches!(rotations, RotationUpdate::FollowStressed(_)));
     }
 }
 
@@ -213,6 +216,36 @@ impl Problem {
         };
         self.sum(forces, tangent, |elements, lame, sums| {
             elements.sweep(lame, u.view(), warped_stress(lame, rotations), sums);
+        });
+    }
+
+    /// Performs [`Self::update_and_linearize`] of large rotations with the trace of strain of another state in G.
+    ///
+    /// A step along tangents stretches what it rotates, to second order. In a slender body this stretch is far larger than
+    /// that of the loads, and with it G would hide the bending stiffness. With the stress before the step, then to first
+    /// order after each correction, Newton's method converges in long steps, however slender the body (Magisano, Leonetti
+    /// and Garcea 2017).
+    fn linearize_stressed(
+        &self,
+        state: &mut State,
+        stressed: &State,
+        forces: &mut Forces,
+        tangent: Option<(Tangent, &mut Matrix)>,
+    ) {
+        let (elements, State { displacement: u, rotations, .. }) = (self.system().elements(), stressed);
+        let mut traces = vec![0.0; rotations.len()];
+        // The trace of points with the same rotation is their mean.
+        let share = rotations.len() as f64 / elements.point_count() as f64;
+        elements.visit_strains(self.material().lame(), u, rotations, &mut |point, _, strain| {
+            traces[elements.rotation_of(point)] += share * strain.trace();
+        });
+        self.system().rotate_edges(state, Kinematics::Corotated);
+        let State { displacement: u, rotations, .. } = state;
+        self.sum(forces, tangent, |elements, lame, sums| {
+            let mut stress = warped_stress(lame, Rotations::Follow(rotations));
+            let trace = |points: [usize; LANES]| points.map(|point| traces[point]).into();
+            let look = |points: [usize; LANES], h: &_| PointStress { trace: trace(points), ..stress(points, h) };
+            elements.sweep(lame, u.view(), look, sums);
         });
     }
 }

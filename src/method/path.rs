@@ -16,14 +16,13 @@ use nalgebra::Vector2;
 
 use crate::assembly::{Forces, Kinematics, LinearSystem, Problem};
 use crate::continuation::{Continuation, ContinuationPoint, Critical, CriticalMode, PathEquations, PathFailure, dot};
-use crate::element::{PointStress, Rotations, Tangent};
+use crate::element::Tangent;
 use crate::format::engineering;
 use crate::rotation::Rotation;
 use crate::sentence::{Sentence, displayed, sentence};
-use crate::simd::LANES;
 use crate::solver::Factor;
 use crate::state::{State, largest_distance};
-use crate::step::{Iteration, Linearization, RotationUpdate, Workspace, warped_stress};
+use crate::step::{Iteration, Linearization, RotationUpdate, Workspace};
 use crate::timings::{Timings, timed};
 
 /// Equations of a body at rest under a growing load.
@@ -47,42 +46,10 @@ impl<'a> StaticEquations<'a> {
     }
 
     /// Computes forces, and the matrix of a tangent, of a state at a load factor.
-    fn linearize_at(&mut self, state: &mut State, rotations: RotationUpdate, tangent: Tangent, load_factor: f64) {
+    fn linearize_at(&mut self, state: &mut State, rotations: RotationUpdate<'_>, tangent: Tangent, load_factor: f64) {
         let Self { problem, forces, workspace, timings, .. } = self;
         let wanted = Linearization::corotated(tangent, load_factor);
         Iteration { problem, state, forces, workspace, timings }.linearize(rotations, wanted);
-    }
-
-    /// Computes as [`Self::linearize_at`] the forces and the exact tangent of a state, but with the trace of strain of
-    /// another state, and its rotations, in G.
-    ///
-    /// A step along tangents stretches what it rotates, to second order. In a slender body this stretch is far larger than
-    /// that of the loads, and with it G would hide the bending stiffness. With the stress before the step, then to first
-    /// order after each correction, Newton's method converges in long steps, however slender the body (Magisano, Leonetti
-    /// and Garcea 2017).
-    fn linearize_with_stress(&mut self, state: &mut State, stressed: &State, load_factor: f64) {
-        let Self { problem, forces, workspace, timings, .. } = self;
-        let matrix = &mut workspace.linear.matrix;
-        timed(&mut timings.linearize, || {
-            let (elements, State { displacement: u, rotations, .. }) = (problem.system().elements(), stressed);
-            let mut traces = vec![0.0; rotations.len()];
-            // Of several points with the same rotation, the mean counts.
-            let share = rotations.len() as f64 / elements.point_count() as f64;
-            elements.visit_strains(problem.material().lame(), u, rotations, &mut |point, _, strain| {
-                traces[elements.rotation_of(point)] += share * strain.trace();
-            });
-            problem.system().rotate_edges(state, Kinematics::Corotated);
-            let State { displacement: u, rotations, .. } = &mut *state;
-            problem.sum(forces, Some((Tangent::EXACT, &mut *matrix)), |elements, lame, sums| {
-                let mut stress = warped_stress(lame, Rotations::Follow(rotations));
-                let trace = |points: [usize; LANES]| points.map(|point| traces[point]).into();
-                let look = |points: [usize; LANES], h: &_| PointStress { trace: trace(points), ..stress(points, h) };
-                elements.sweep(lame, u.view(), look, sums);
-            });
-            problem.add_load_stiffness(state, Tangent::EXACT, load_factor, matrix);
-            problem.balance(state, Kinematics::Corotated, load_factor, forces);
-        });
-        workspace.tangent = None;
     }
 }
 
@@ -171,10 +138,8 @@ impl PathEquations for StaticEquations<'_> {
     ) -> Option<usize> {
         /// Relative residual that is only rounding error: next to a singular tangent, it must not become a correction.
         const BALANCED: f64 = 2e-15;
-        match stressed {
-            Some(stressed) => self.linearize_with_stress(state, stressed, factor),
-            None => self.linearize_at(state, RotationUpdate::Follow, Tangent::EXACT, factor),
-        }
+        let rotations = stressed.map_or(RotationUpdate::Follow, RotationUpdate::FollowStressed);
+        self.linearize_at(state, rotations, Tangent::EXACT, factor);
         let Self { problem, forces, workspace, timings, .. } = self;
         if forces.relative_residual > BALANCED {
             problem.system().pattern().restrict(forces.residual(), correction);
