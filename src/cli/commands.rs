@@ -189,19 +189,14 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     outputs.check()?;
     let watch = Watch::new();
     let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
-    let beam = if watch.is_cancelled() { None } else { LoadCurve::new(&scene, &|_| ControlFlow::Continue(())) };
+    let beam = LoadCurve::new(&scene).filter(|_| !watch.is_cancelled());
     drop(watch);
     let no_path = || {
         let expected = "expected a static scene with a method other than linear";
         about(&source, format_args!("{expected}: a load path is a sequence of equilibria with large rotations"))
     };
     let (summary, table) = match (&beam, &path) {
-        (Some(curve), path) => {
-            // A path on which nothing happens adds nothing to the curve.
-            let path = path.as_ref().filter(|path| !path.is_plain());
-            let own = path.map(|path| format!("\n{}", text::path(&scene, path))).unwrap_or_default();
-            (text::curve(&scene, curve) + &own, text::curve_table(curve))
-        }
+        (Some(curve), path) => (text::curve(&scene, curve, path.as_ref()), text::curve_table(curve)),
         (None, Some(path)) => (text::path(&scene, path), text::path_table(&scene, path)),
         (None, None) => return Err(no_path()),
     };

@@ -265,8 +265,9 @@ fn energy_text(motion: Motion<'_>, within: &Contexts) -> String {
     text
 }
 
-/// Formats a load–deflection curve for display.
-pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
+/// Formats a load–deflection curve for display, and the load path on the scene's own mesh; where nothing happens on the path,
+/// its end alone.
+pub(super) fn curve(scene: &Scene, curve: &LoadCurve, own: Option<&LoadPath>) -> String {
     // The whole table uses one prefix.
     let tips = curve.samples.iter().flat_map(|s| [s.linear.x, s.linear.y, s.exact.x, s.exact.y]);
     let (power, symbol) = prefix(&tips.collect::<Vec<_>>(), "m");
@@ -284,12 +285,15 @@ pub(super) fn curve(scene: &Scene, curve: &LoadCurve) -> String {
     for claim in Claim::of_curve(curve) {
         let _ = writeln!(text, "{claim}");
     }
-    let [along, across] = scene.beam.as_ref().map_or([0; 2], |beam| beam.cells);
-    let _ = writeln!(text, "\nfinite elements, {} {along}×{across}:", scene.element().id());
-    for point in &curve.methods {
-        let unstable = point.status == Status::Converged && point.stable == Some(false);
-        let word = point.status.word() + if unstable { ", unstable" } else { "" };
-        let _ = writeln!(text, "{:<7} at full load: {}, {word}", point.method.id(), pair(point.tip, "m"));
+    text.push('\n');
+    let end = own.filter(|path| path.is_plain()).and_then(|path| path.states.last()?.probes.first());
+    match (own, end) {
+        (Some(_), Some(u)) => {
+            let [along, across] = scene.beam.as_ref().map_or([0; 2], |beam| beam.cells);
+            let _ = writeln!(text, "{} {along}×{across} at full load: {}", scene.element().id(), pair(*u, "m"));
+        }
+        (Some(own), None) => text += &path(scene, own),
+        (None, _) => {}
     }
     text
 }

@@ -97,11 +97,6 @@ pub(crate) fn draw(drawing: &mut dyn DrawTarget, ink: Ink, mark: Mark, places: &
     }
     for &[x, y] in places {
         match mark {
-            Mark::Cross => {
-                for up in [size, -size] {
-                    drawing.line(&[[x - size, y - up], [x + size, y + up]], ink, solid(2.0));
-                }
-            }
             Mark::Ring => drawing.circle([x, y], size, ink, Some(solid(1.5))),
             _ => drawing.circle([x, y], size, ink, None),
         }

@@ -61,8 +61,6 @@ pub enum Mark {
     Disc,
     /// A hollow circle at every point.
     Ring,
-    /// A cross at every point.
-    Cross,
 }
 
 impl Mark {
@@ -72,23 +70,8 @@ impl Mark {
     }
 }
 
-/// A point of a series.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FigurePoint {
-    /// Value of each quantity of the figure; `None` where the point has none.
-    pub values: Vec<Option<f64>>,
-    /// Status in a word, such as `stable`; may be empty.
-    pub state: String,
-    /// `true` if it belongs to the present load.
-    pub is_present: bool,
-}
-
-impl FigurePoint {
-    /// Returns a point that has all values.
-    pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
-        Self { values: values.into_iter().map(Some).collect(), ..Self::default() }
-    }
-}
+/// A point of a series: the value of each quantity of the figure, not finite where the point has none.
+pub type FigurePoint = Vec<f64>;
 
 /// Points with one name, colour and mark.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,7 +133,7 @@ impl Figure {
 
     /// Returns the values of a point along both axes; `None` if one is missing.
     pub fn place(&self, point: &FigurePoint) -> Option<[f64; 2]> {
-        let value = |axis: usize| point.values.get(axis).copied().flatten().filter(|v| v.is_finite());
+        let value = |axis: usize| point.get(axis).copied().filter(|v| v.is_finite());
         Some([value(self.axes[0])?, value(self.axes[1])?])
     }
 
@@ -197,31 +180,21 @@ impl Figure {
 
     /// Formats the series as CSV, a row per point, in the units of the headings.
     pub fn csv(&self) -> String {
-        let has_states = self.series.iter().flat_map(|series| &series.points).any(|p| !p.state.is_empty());
-        let mut head = vec!["series".to_owned()];
-        head.extend(self.quantities.iter().map(|FigureQuantity { name, unit }| match *unit {
+        let heading = |FigureQuantity { name, unit }: &FigureQuantity| match *unit {
             "" => name.clone(),
             unit => format!("{name} ({unit})"),
-        }));
-        head.extend(has_states.then(|| "state".to_owned()));
-        let mut text = csv_row(&head);
+        };
         // Adding 0 turns −0 into 0.
-        let value = |v: Option<f64>| v.filter(|v| v.is_finite()).map_or_else(String::new, |v| (v + 0.0).to_string());
-        for series in &self.series {
-            for point in &series.points {
-                let mut row = vec![series.name.clone()];
-                row.extend(point.values.iter().copied().map(value));
-                row.extend(has_states.then(|| point.state.clone()));
-                text.push_str(&csv_row(&row));
-            }
-        }
-        text
+        let value = |v: &f64| if v.is_finite() { (v + 0.0).to_string() } else { String::new() };
+        let row = |name: &str, fields: Vec<String>| {
+            let fields = fields.iter().map(|field| csv_field(field));
+            std::iter::once(csv_field(name)).chain(fields).collect::<Vec<_>>().join(",") + "\n"
+        };
+        let head = row("series", self.quantities.iter().map(heading).collect());
+        let points = self.series.iter().flat_map(|series| series.points.iter().map(move |point| (series, point)));
+        let rows = points.map(|(series, point)| row(&series.name, point.iter().map(value).collect()));
+        std::iter::once(head).chain(rows).collect()
     }
-}
-
-fn csv_row(fields: &[String]) -> String {
-    let fields: Vec<_> = fields.iter().map(|field| csv_field(field)).collect();
-    fields.join(",") + "\n"
 }
 
 /// Axis of a scene's loads, or of the time step of a motion.

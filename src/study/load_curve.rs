@@ -1,4 +1,4 @@
-//! Load–deflection curve of a cantilever: linear theory, the exact beam, and the results of all methods at full load.
+//! Load–deflection curve of a cantilever in beam theory: linear, and geometrically exact.
 
 use super::prelude::*;
 use crate::exact_beam::{ExactBeam, PathPoint};
@@ -37,19 +37,6 @@ impl Sample {
     }
 }
 
-/// Result of a method at full load.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct MethodPoint {
-    /// Method.
-    pub method: MethodKind,
-    /// Displacement of the tip, m; of the last finite state if the method did not converge.
-    pub tip: Vector2<f64>,
-    /// Status at the end.
-    pub status: Status,
-    /// `false` if the result is an unstable equilibrium; `None` if unknown.
-    pub stable: Option<bool>,
-}
-
 /// Load–deflection curve of a cantilever scene.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LoadCurve {
@@ -60,8 +47,6 @@ pub struct LoadCurve {
     /// Limits of the error of linear theory, 3, 5 and 10 percent of the exact displacement, that it exceeds within the
     /// samples, each with the interpolated sample at the limit.
     pub departures: Vec<(f64, Sample)>,
-    /// Results of every method, on the scene's own mesh.
-    pub methods: Vec<MethodPoint>,
 }
 
 /// Largest load factor of the curve.
@@ -76,12 +61,10 @@ const MAX_ZOOMS: u32 = 4;
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 
 impl LoadCurve {
-    /// Returns the curve, if the scene is a cantilever with an exact solution and a probe at its tip; `None` also if it is
-    /// cancelled.
-    pub fn new(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
+    /// Returns the curve, if the scene is valid, and a cantilever with an exact solution and a probe at its tip.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        scene.validate().ok()?;
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
-        // A scene that cannot be simulated has no curve.
-        let system = Simulation::new(scene).ok()?.system().clone();
         let height = scene.beam.as_ref()?.height;
         let linear = beam.linear_tip_displacement();
         let rest = Vector2::new(beam.length, 0.0);
@@ -112,18 +95,6 @@ impl LoadCurve {
             Some((percent, pair[0].towards(&pair[1], ((percent - from) / (to - from)).clamp(0.0, 1.0))))
         };
         let departures = DEPARTURES.into_iter().filter_map(departure).collect();
-        let mut methods = Vec::new();
-        for (i, entry) in METHODS.iter().enumerate() {
-            let mut own = scene.clone().with_method(entry.kind);
-            own.solver.accept_after = 0;
-            let Ok(mut simulation) = Simulation::with_system(&own, system.clone()) else { continue };
-            let fraction = i as f64 / METHODS.len() as f64;
-            simulation.solve_watched(&mut |_| observe(Progress::at(fraction))).continue_value()?;
-            let probe = simulation.problem().probes().iter().find(|p| p.place == Place::from("right"));
-            let Some(tip) = probe.map(|probe| probe.mean(simulation.displacement())) else { continue };
-            let stable = simulation.certify().stable;
-            methods.push(MethodPoint { method: entry.kind, tip, status: simulation.status().clone(), stable });
-        }
-        Some(Self { samples, buckles_at, departures, methods })
+        Some(Self { samples, buckles_at, departures })
     }
 }

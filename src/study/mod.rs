@@ -31,7 +31,7 @@ pub use colors::color;
 pub use fine::moved_points;
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;
-pub use load_curve::{LoadCurve, MethodPoint, Sample};
+pub use load_curve::{LoadCurve, Sample};
 pub use load_path::{LoadPath, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::time_of_motion;
 pub use progress::{Extent, StudyError};

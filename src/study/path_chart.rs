@@ -67,7 +67,7 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
             Some([motion, _]) => motion,
             None => along.full * s.factor,
         };
-        FigurePoint::new([along, u.x, u.y].into_iter().chain(last))
+        [along, u.x, u.y].into_iter().chain(last).collect()
     };
     let points: Vec<FigurePoint> = path.states.iter().map(point).collect();
     let mut series: Vec<FigureSeries> = pieces(path, &points)
@@ -78,12 +78,10 @@ pub fn figure(path: &LoadPath, scene: &Scene, ordinate: &Ordinate, render: Rende
     series.extend(path.bifurcations.iter().filter_map(|bifurcation| {
         let next = path.states.iter().position(|s| s.factor > bifurcation.factor)?;
         let (from, to) = (points.get(next.checked_sub(1)?)?, points.get(next)?);
-        let middle = from.values.iter().zip(&to.values).map(|(a, b)| Some(0.5 * ((*a)? + (*b)?))).collect();
-        let points = vec![FigurePoint { values: middle, ..FigurePoint::default() }];
-        Some(FigureSeries::new(render(&bifurcation.label()), Ink::Unstable, Mark::Disc, points))
+        let middle = from.iter().zip(to).map(|(a, b)| 0.5 * (a + b)).collect();
+        Some(FigureSeries::new(render(&bifurcation.label()), Ink::Unstable, Mark::Disc, vec![middle]))
     }));
-    let last = points.last().map(|point| FigurePoint { is_present: true, ..point.clone() });
-    let name = render(&sentence!("the scene"));
+    let (name, last) = (render(&sentence!("the scene")), points.last().cloned());
     series.push(FigureSeries::new(name, Ink::Scene, Mark::Disc, last.into_iter().collect()));
     Figure { title: format!("{}: load path", path.scene), quantities, axes, series, head: Default::default() }
 }
@@ -115,7 +113,7 @@ fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Pat
         let is_stable = states.iter().all(|s| s.unstable_modes == 0);
         let line = match path.states_before_jump == Some(i + 1) {
             true => ("it jumps", Ink::Unstable, Mark::Dots),
-            false if is_stable => ("stable", Ink::Solution(MethodKind::Newton.id()), Mark::Line),
+            false if is_stable => ("load path", Ink::Solution(MethodKind::Newton.id()), Mark::Line),
             false => ("unstable", Ink::Unstable, Mark::Dashes),
         };
         match pieces.last_mut().filter(|(_, last)| *last == line) {

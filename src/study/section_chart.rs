@@ -70,25 +70,23 @@ pub const STRESSES: [(&str, &str, [&str; 2]); 2] = [
 pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render: Render<'_>) -> [Figure; 2] {
     [0, 1].map(|component| {
         let (_, name, names) = STRESSES[component];
-        let recovered = section.points.iter().map(|p| (p.stress.map(|stress| stress[component]), p.along)).collect();
+        let recovered =
+            section.points.iter().map(|p| vec![p.stress.map_or(f64::NAN, |stress| stress[component]), p.along]);
         let ends =
             [section.points.first(), section.points.last()].map(|point| point.filter(|point| point.beam.is_some()));
-        let beam = || -> Vec<(Option<f64>, f64)> {
+        let beam = || -> Vec<FigurePoint> {
             let [Some(first), Some(last)] = ends else { return Vec::new() };
             let along = |k: u32| first.along + (last.along - first.along) * f64::from(k) / f64::from(BEAM_POINTS - 1);
             let stress = |along: f64| section.beam_stress(scene.material.thickness, along)[component];
-            (0..BEAM_POINTS).map(|k| (Some(stress(along(k))), along(k))).collect()
+            (0..BEAM_POINTS).map(along).map(|along| vec![stress(along), along]).collect()
         };
-        let series = |name: &str, ink, mark, points: Vec<(Option<f64>, f64)>| {
-            let at = |(stress, along)| FigurePoint { values: vec![stress, Some(along)], ..FigurePoint::default() };
-            FigureSeries::new(render(&name.into()), ink, mark, points.into_iter().map(at).collect())
-        };
+        let series = |name: &str, ink, mark, points| FigureSeries::new(render(&name.into()), ink, mark, points);
         let method = Ink::Solution(scene.solver.method.id());
         let mut series = vec![
-            series(names[0], method, Mark::Line, recovered),
+            series(names[0], method, Mark::Line, recovered.collect()),
             series(names[1], Ink::BeamTheory, Mark::Dashes, beam()),
         ];
-        series.retain(|series| series.points.iter().any(|point| point.values.iter().all(Option::is_some)));
+        series.retain(|series| series.points.iter().any(|point| point.iter().all(|value| value.is_finite())));
         series.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {
             let [value, of_stress] = [&section.forces, &section.stress_forces]
                 .map(|forces| within.engineering(three_digits(of(forces)), unit));
@@ -123,7 +121,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
         let within = contexts[i];
         let value = |forces: &SectionForces| within.rounded(value(forces));
         let (ink, name) = (Ink::Solution(scene.solver.method.id()), render(&name.into()));
-        let points = sections.iter().map(|section| FigurePoint::new([section.line.at.x, value(&section.forces)]));
+        let points = sections.iter().map(|section| vec![section.line.at.x, value(&section.forces)]);
         let values = || sections.iter().map(|section| value(&section.forces));
         let [low, high] = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
         let is_constant = three_digits(low) == three_digits(high);
@@ -161,7 +159,7 @@ mod tests {
         let within = contexts(std::slice::from_ref(&section), &beam);
         let [_, figure] = stress(&section, &scene, &within, &ToString::to_string);
         let series = figure.series.iter().find(|series| series.name == "shear stress, beam theory").unwrap();
-        let peak = series.points.iter().filter_map(|point| point.values[0]).map(f64::abs).fold(0.0, f64::max);
+        let peak = series.points.iter().map(|point| point[0].abs()).fold(0.0, f64::max);
         let area = (section.ends[1] - section.ends[0]).norm() * scene.material.thickness;
         assert!((peak - 1.5 * section.forces.shear.abs() / area).abs() < 1e-9 * peak, "{peak}");
     }

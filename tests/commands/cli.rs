@@ -264,11 +264,13 @@ fn gpu_lists_the_adapters_and_a_name_chooses_one() {
 }
 
 #[test]
-fn curve_prints_linear_theory_the_reference_and_every_method() {
+fn curve_prints_linear_theory_the_exact_beam_and_the_end_of_the_path() {
     let path = tempfile::NamedTempFile::with_suffix(".csv").unwrap();
     let text = succeeds(&["curve", "elastica", "--out", path.path().to_str().unwrap()]);
-    has_all(&text, "differs by 3 %|differs by 5 %|differs by 10 %|finite elements, |linear  at full load|warped  at");
-    has_all(&text, "diverged|newton  at full load");
+    has_all(&text, "differs by 3 %|differs by 5 %|differs by 10 %");
+    let end = solve_json(&["elastica", "--set", "solver.method=newton"])["probes"][0]["u"].clone();
+    let end = warpbeam::format::engineering_pair([0, 1].map(|axis| end[axis].as_f64().unwrap()), "m");
+    assert!(text.contains(&format!("at full load: {end}\n")), "{end}: {text}");
     let rows = numbers(&fs::read_to_string(path).unwrap());
     let full = rows.iter().find(|r| (r[0] - 1.0).abs() < 1e-9).unwrap();
     let reference = &solve_json(&["elastica"])["probes"][0]["reference_u"];

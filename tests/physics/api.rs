@@ -87,7 +87,7 @@ fn scenes_in_code_are_checked_where_they_are_simulated() {
         assert!(Simulation::with_system(&scene, system.clone()).is_err());
         assert!(Problem::new(&scene, system.clone()).is_err());
         assert!(Reference::of(&scene).is_err());
-        assert!(LoadCurve::new(&scene, &go_on).is_none(), "{scene:?}");
+        assert!(LoadCurve::new(&scene).is_none(), "{scene:?}");
         // With another mesh, the scene's own geometry is not used; everything else is validated.
         if scene.validate().is_err() && Simulation::with_mesh(&scene, mesh.clone()).is_ok() {
             let of_geometry = |e: String| e.starts_with("beam") || e.starts_with("mesh");

@@ -89,8 +89,8 @@ fn show_row(ui: &mut Ui, row: &FigureSeries, value: &str) {
     let places: &[[f64; 2]] = if row.mark.is_line() { &[[0.0; 2], [16.0, 0.0]] } else { &[[8.0, 0.0]] };
     plot::draw(&mut ChartPainter::new(ui, rect.left_center()), row.ink, row.mark, places, 4.5);
     let painter = ui.painter();
-    let ink = if row.mark == Mark::Cross { palette.error } else { palette.text };
-    let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, FontId::proportional(SMALL), ink);
+    let small = FontId::proportional(SMALL);
+    let right = painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, small, palette.text);
     let room = (right.left() - rect.left() - MARK - 8.0).max(0.0);
     let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(BODY), palette.text);
     job.wrap = egui::text::TextWrapping::truncate_at_width(room);
@@ -101,9 +101,4 @@ fn show_row(ui: &mut Ui, row: &FigureSeries, value: &str) {
     let spoken = format!("{}{separator}{value}", row.name);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     response.on_hover_text(spoken);
-}
-
-/// Returns the point of a figure for a load and the displacement under it.
-pub(crate) fn point(load: f64, u: nalgebra::Vector2<f64>) -> FigurePoint {
-    FigurePoint::new([load, u.x, u.y])
 }

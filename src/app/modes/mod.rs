@@ -13,4 +13,4 @@ use crate::app::viewport::projection::Projection;
 use crate::app::widgets::chart::{self, ChartPainter};
 use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
 use crate::study::Setting;
-use crate::study::figure::{Figure, FigurePoint, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};
+use crate::study::figure::{Figure, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};

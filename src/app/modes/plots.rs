@@ -225,7 +225,7 @@ fn line(
 ) -> FigureSeries {
     let samples: Vec<&MotionSample> = history.last(seconds).collect();
     let stride = samples.len().div_ceil(MAX_POINTS).max(1);
-    let points = samples.iter().rev().step_by(stride).map(|s| FigurePoint::new([s.time, value(s)])).collect();
+    let points = samples.iter().rev().step_by(stride).map(|s| vec![s.time, value(s)]).collect();
     FigureSeries::new(tr(name).to_owned(), ink, Mark::Line, points)
 }
 

@@ -18,13 +18,14 @@ use crate::study::{
     time_from_rest, time_of_motion,
 };
 
-/// Load–displacement curve of a scene.
+/// Load–displacement curve of a scene at rest.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) enum Curve {
-    /// Load curve of a cantilever, and its scene.
-    Beam(Box<(LoadCurve, SentScene)>),
-    /// Load path of any other scene at rest, and its scene.
-    Path(Box<(LoadPath, SentScene)>),
+pub(crate) struct Curve {
+    pub scene: SentScene,
+    /// Load path on the scene's mesh; without states under linear theory.
+    pub path: LoadPath,
+    /// Beam theory of a cantilever.
+    pub beam: Option<LoadCurve>,
 }
 
 facts! {
@@ -69,12 +70,10 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
             n = number(MAX_CURVE_UNKNOWNS as f64)
         ));
     }
-    let own = || SentScene(scene.clone());
-    if let Some(curve) = LoadCurve::new(scene, observe) {
-        return Ok(Some(Curve::Beam(Box::new((curve, own())))));
-    }
-    let path = LoadPath::observed(scene, observe);
-    Ok(path.map(|path| Curve::Path(Box::new((path, own())))))
+    let (path, beam) = (LoadPath::observed(scene, observe), LoadCurve::new(scene));
+    let has_curve = path.is_some() || beam.is_some();
+    let curve = || Curve { scene: SentScene(scene.clone()), path: path.unwrap_or_default(), beam };
+    Ok(has_curve.then(curve))
 }
 
 /// Results of the current scene; each is `None` until it has been computed.
