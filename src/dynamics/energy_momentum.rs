@@ -7,9 +7,9 @@
 
 use nalgebra::Vector2;
 
+use super::IntegratorEntry;
 use super::stage::{Stage, Step};
 use super::step::{Solves, StepEnergy, StepError, combine};
-use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
 
@@ -21,7 +21,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     order: 2,
     stages: 1,
     always_iterates: true,
-    inertia: Inertia::Consistent,
+    colors: [[185, 20, 110], [255, 150, 205]],
     step,
 };
 

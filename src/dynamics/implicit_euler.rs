@@ -6,9 +6,9 @@
 
 use nalgebra::Vector2;
 
+use super::IntegratorEntry;
 use super::stage::{Stage, Step};
 use super::step::{Solves, StepEnergy, StepError, combine, work};
-use super::{Inertia, IntegratorEntry};
 use crate::element::Tangent;
 use crate::scene::IntegratorKind;
 
@@ -20,7 +20,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     order: 1,
     stages: 1,
     always_iterates: false,
-    inertia: Inertia::Consistent,
+    colors: [[190, 20, 30], [255, 105, 97]],
     step,
 };
 

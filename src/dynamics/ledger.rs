@@ -2,7 +2,6 @@
 
 use nalgebra::Vector2;
 
-use super::Inertia;
 use super::step::StepEnergy;
 use crate::assembly::{Mass, Problem};
 use crate::format::{engineering, percent};
@@ -50,9 +49,9 @@ pub struct Ledger {
 
 impl Ledger {
     /// Returns the ledger of a state at the start of a motion.
-    pub(crate) fn open(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
+    pub(crate) fn open(problem: &Problem, mass: &Mass, is_lumped: bool, state: &State) -> Self {
         let mut ledger = Self::default();
-        ledger.measure(problem, mass, inertia, state);
+        ledger.measure(problem, mass, is_lumped, state);
         ledger.start = ledger.total();
         ledger.note_put_in();
         ledger
@@ -63,11 +62,11 @@ impl Ledger {
         self.put_in = self.put_in.max(self.kinetic + self.elastic + self.dissipated + self.integrator);
     }
 
-    fn measure(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+    fn measure(&mut self, problem: &Problem, mass: &Mass, is_lumped: bool, state: &State) {
         self.kinetic = 0.5
-            * match inertia {
-                Inertia::Consistent => mass.energy_product(&state.velocity),
-                Inertia::Lumped => state.velocity.iter().zip(&mass.lumped).map(|(v, m)| m * v.norm_squared()).sum(),
+            * match is_lumped {
+                false => mass.energy_product(&state.velocity),
+                true => state.velocity.iter().zip(&mass.lumped).map(|(v, m)| m * v.norm_squared()).sum(),
             };
         self.elastic = problem.elastic_energy(state);
         self.potential = problem.loads().potential(state, 1.0);
@@ -80,11 +79,11 @@ impl Ledger {
         energies: &StepEnergy,
         problem: &Problem,
         mass: &Mass,
-        inertia: Inertia,
+        is_lumped: bool,
         state: &State,
     ) {
         let before = *self;
-        self.measure(problem, mass, inertia, state);
+        self.measure(problem, mass, is_lumped, state);
         self.dissipated += energies.dissipated;
         self.pulses += energies.pulses;
         self.mouse_spring += energies.mouse_spring;
@@ -107,9 +106,9 @@ impl Ledger {
     }
 
     /// Records an edit that leaves the state unchanged.
-    pub(crate) fn edit(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+    pub(crate) fn edit(&mut self, problem: &Problem, mass: &Mass, is_lumped: bool, state: &State) {
         let before = self.total();
-        self.measure(problem, mass, inertia, state);
+        self.measure(problem, mass, is_lumped, state);
         self.edits += self.total() - before;
         self.throughput += (self.total() - before).abs();
         self.note_put_in();
@@ -117,9 +116,9 @@ impl Ledger {
 
     /// Records that the state's energy is computed by another theory from now on; the difference counts as energy of
     /// the integrator.
-    pub(crate) fn change_theory(&mut self, problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) {
+    pub(crate) fn change_theory(&mut self, problem: &Problem, mass: &Mass, is_lumped: bool, state: &State) {
         let before = self.total();
-        self.measure(problem, mass, inertia, state);
+        self.measure(problem, mass, is_lumped, state);
         self.integrator -= self.total() - before;
         self.throughput += (self.total() - before).abs();
     }
@@ -186,11 +185,11 @@ pub struct Momentum {
 
 impl Momentum {
     /// Computes the momentum of a state.
-    pub(crate) fn of(problem: &Problem, mass: &Mass, inertia: Inertia, state: &State) -> Self {
+    pub(crate) fn of(problem: &Problem, mass: &Mass, is_lumped: bool, state: &State) -> Self {
         let mut nodal = state.velocity.clone();
-        match inertia {
-            Inertia::Consistent => mass.multiply(&state.velocity, &mut nodal),
-            Inertia::Lumped => nodal.iter_mut().zip(&mass.lumped).for_each(|(p, m)| *p *= *m),
+        match is_lumped {
+            false => mass.multiply(&state.velocity, &mut nodal),
+            true => nodal.iter_mut().zip(&mass.lumped).for_each(|(p, m)| *p *= *m),
         }
         let positions = problem.system().mesh().nodes().iter().zip(&state.displacement).map(|(x, u)| x + u);
         Self { linear: nodal.iter().sum(), angular: positions.zip(&nodal).map(|(x, p)| x.perp(p)).sum() }

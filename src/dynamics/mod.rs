@@ -30,15 +30,6 @@ pub(crate) use stage::{StageSolver, Step};
 pub use step::{Counts, StepError, StopReason};
 pub(crate) use step::{Memory, Solves, StepEnergy};
 
-/// Mass matrix of an integrator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inertia {
-    /// Consistent, ∫ ρ t NₐN_b dA.
-    Consistent,
-    /// Lumped, one mass per node.
-    Lumped,
-}
-
 /// Entry of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegratorEntry {
@@ -54,14 +45,15 @@ pub struct IntegratorEntry {
     pub stages: u32,
     /// `true` if stages are always iterated to the tolerance, whatever number of solves is requested.
     pub always_iterates: bool,
-    /// Mass matrix.
-    pub inertia: Inertia,
+    /// Colours of its results in charts, on a light and on a dark background.
+    pub colors: [[u8; 3]; 2],
     /// Function that computes a step.
     pub(crate) step: fn(&mut Step<'_>) -> Result<StepEnergy, StepError>,
 }
 
 impl IntegratorEntry {
-    /// Returns `true` for an explicit integrator, which solves no equations and is stable below a critical step only.
+    /// Returns `true` for an explicit integrator, which solves no equations, has a lumped mass matrix, and is stable below a
+    /// critical step only.
     pub fn is_explicit(&self) -> bool {
         self.stages == 0
     }

@@ -5,9 +5,9 @@
 
 use nalgebra::Vector2;
 
+use super::IntegratorEntry;
 use super::stage::Step;
 use super::step::{Memory, StepEnergy, StepError, combine};
-use super::{Inertia, IntegratorEntry};
 use crate::assembly::MouseSpring;
 use crate::element::StrainRate;
 use crate::scene::IntegratorKind;
@@ -21,7 +21,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     order: 1,
     stages: 0,
     always_iterates: false,
-    inertia: Inertia::Lumped,
+    colors: [[115, 75, 50], [200, 165, 135]],
     step,
 };
 

@@ -4,9 +4,9 @@
 //! and Shampine 1996, *Analysis and implementation of TR-BDF2*. L-stable: modes that the step cannot resolve are
 //! damped, others hardly. Both stages have the same matrix up to the state at which it is evaluated.
 
+use super::IntegratorEntry;
 use super::stage::{Stage, Step};
 use super::step::{StepEnergy, StepError, combine};
-use super::{Inertia, IntegratorEntry};
 use crate::scene::IntegratorKind;
 use std::f64::consts::SQRT_2;
 
@@ -18,7 +18,7 @@ pub(super) static ENTRY: IntegratorEntry = IntegratorEntry {
     order: 2,
     stages: 2,
     always_iterates: false,
-    inertia: Inertia::Consistent,
+    colors: [[85, 110, 0], [190, 225, 80]],
     step,
 };
 

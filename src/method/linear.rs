@@ -14,6 +14,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "Linear FEM: one solve, accurate only for small rotations; under larger ones the area of the body grows.",
     start: || Box::<Linear>::default(),
     motion: MotionMethod::Linear,
+    colors: [[200, 90, 0], [240, 150, 60]],
 };
 
 /// The warped iteration with identity rotations: the first solve gives the result, further ones refine it.

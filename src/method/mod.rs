@@ -39,6 +39,8 @@ pub struct MethodEntry {
     pub(crate) start: fn() -> Box<dyn Method>,
     /// How time steps are solved.
     pub motion: MotionMethod,
+    /// Colours of its results in charts, on a light and on a dark background.
+    pub colors: [[u8; 3]; 2],
 }
 
 /// How the stages of time steps are solved.

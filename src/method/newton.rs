@@ -36,6 +36,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
     start: || Box::<Newton>::default(),
     motion: MotionMethod::Exact,
+    colors: [[0, 100, 180], [90, 200, 250]],
 };
 
 /// Full steps before the residual must be close to zero. Usually 5 to 9 are needed.

@@ -19,6 +19,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
             with it. Allows large rotations, but diverges under large loads.",
     start: || Box::<Warped>::default(),
     motion: MotionMethod::Warped,
+    colors: [[128, 50, 190], [202, 160, 255]],
 };
 
 /// Method `warped`, the article's iteration.

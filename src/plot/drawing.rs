@@ -1,6 +1,5 @@
 //! Lines, shapes and texts, written as SVG on white paper; the window paints them in the colours of its theme.
 
-use crate::study::color;
 use crate::study::figure::Ink;
 
 /// Width and dashes of a line.
@@ -188,7 +187,7 @@ fn hex(ink: Ink) -> String {
         Ink::Grid => [0xdd; 3],
         Ink::Curve | Ink::Load | Ink::Reference => [0x33; 3],
         Ink::Limit => [0x55; 3],
-        Ink::Solution(id) => color(id, false),
+        Ink::Solution([light, _]) => light,
         Ink::Unstable => [0xbe, 0x14, 0x1e],
         Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
         Ink::Fixed(color) => color,

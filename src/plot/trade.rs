@@ -91,7 +91,7 @@ impl<'a> StudyChart<'a> {
             let mark = mark(*at, m.setting.element, if m.pareto { 5.5 } else { 3.5 });
             let is_faint = if m.motion.is_some() { m.setting.method == MethodKind::Linear } else { !m.converged };
             let opacity = if is_faint { 0.45 } else { 1.0 };
-            drawing.polygon(&mark, Ink::Solution(m.setting.series()), opacity, &m.setting.to_string());
+            drawing.polygon(&mark, Ink::of(&m.setting), opacity, &m.setting.to_string());
         }
     }
 }
@@ -105,10 +105,10 @@ fn error(bound: f64) -> f64 {
 fn key(drawing: &mut Drawing, frame: &ChartFrame, moves: bool) {
     const ROW: f64 = 22.0;
     let (x, mut y) = (frame.across()[1], frame.top + 10.0);
-    let integrators = INTEGRATORS.iter().map(|entry| entry.id).filter(|_| moves);
-    for id in METHODS.iter().map(|entry| entry.id).filter(|_| !moves).chain(integrators) {
+    let integrators = INTEGRATORS.iter().map(|entry| (entry.id, entry.colors)).filter(|_| moves);
+    for (id, colors) in METHODS.iter().map(|entry| (entry.id, entry.colors)).filter(|_| !moves).chain(integrators) {
         for element in ElementKind::all() {
-            drawing.polygon(&mark([x + 22.0, y], element, 5.0), Ink::Solution(id), 1.0, "");
+            drawing.polygon(&mark([x + 22.0, y], element, 5.0), Ink::Solution(colors), 1.0, "");
             drawing.text([x + 36.0, y + 4.0], Anchor::Start, &format!("{} {id}", element.id()));
             y += ROW;
         }

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::{Body, SimulationError, Status};
 use crate::assembly::{Change, Forces, Kinematics, Mass, Problem};
 use crate::dynamics::{
-    Counts, Inertia, IntegratorEntry, Ledger, LinearTheory, Memory, Solves, StageSolver, Step, StepEnergy, StepError,
+    Counts, IntegratorEntry, Ledger, LinearTheory, Memory, Solves, StageSolver, Step, StepEnergy, StepError,
     StopReason, critical_step,
 };
 use crate::element::StrainRate;
@@ -122,7 +122,7 @@ impl TimeStepping {
         self.begin_steps(body);
         let Body { scene, problem, state, .. } = body;
         (self.counts, self.decision) = Default::default();
-        self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
+        self.ledger = Ledger::open(problem, &self.mass, has_lumped_mass(scene), state);
         self.find_critical_step(scene, problem);
     }
 
@@ -178,10 +178,10 @@ impl TimeStepping {
         problem.set_time(state.time);
         state.knows_net_force = false;
         self.quiet_steps = 0;
-        if inertia(scene) == inertia(before) {
-            self.ledger.edit(problem, &self.mass, inertia(scene), state);
+        if has_lumped_mass(scene) == has_lumped_mass(before) {
+            self.ledger.edit(problem, &self.mass, has_lumped_mass(scene), state);
         } else {
-            self.ledger = Ledger::open(problem, &self.mass, inertia(scene), state);
+            self.ledger = Ledger::open(problem, &self.mass, has_lumped_mass(scene), state);
         }
         if change >= Change::Stiffness || mass_changes || scene.dynamics != before.dynamics {
             self.find_critical_step(scene, problem);
@@ -266,7 +266,7 @@ impl TimeStepping {
     fn record(&mut self, energies: &StepEnergy, body: &Body) -> Result<(), StepError> {
         if self.records_energy() {
             let (Body { scene, problem, state, .. }, mut ledger) = (body, self.ledger);
-            ledger.record(energies, problem, &self.mass, inertia(scene), state);
+            ledger.record(energies, problem, &self.mass, has_lumped_mass(scene), state);
             if self.is_guarded && ledger.has_gained_since(&self.ledger, MAX_ADDED) {
                 return Err(StepError::AddedEnergy);
             }
@@ -310,7 +310,7 @@ impl TimeStepping {
     /// Records that the step begins with another strain measure than the last one ended with.
     fn change_theory(&mut self, body: &Body) {
         if self.records_energy() {
-            self.ledger.change_theory(&body.problem, &self.mass, inertia(&body.scene), &self.start);
+            self.ledger.change_theory(&body.problem, &self.mass, has_lumped_mass(&body.scene), &self.start);
         }
     }
 
@@ -375,7 +375,7 @@ impl TimeStepping {
     /// Updates the motion after a mouse spring was attached, moved or removed.
     pub(super) fn pulled(&mut self, body: &Body) {
         if !self.records_energy() {
-            self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
+            self.ledger = Ledger::open(&body.problem, &self.mass, has_lumped_mass(&body.scene), &body.state);
         }
         self.is_guarded = true;
         self.quiet_steps = 0;
@@ -421,7 +421,7 @@ impl TimeStepping {
 
     pub(super) fn keep_ledger(&mut self, keep: bool, body: &Body) {
         if keep && !self.keeps_ledger {
-            self.ledger = Ledger::open(&body.problem, &self.mass, inertia(&body.scene), &body.state);
+            self.ledger = Ledger::open(&body.problem, &self.mass, has_lumped_mass(&body.scene), &body.state);
         }
         self.keeps_ledger = keep;
     }
@@ -436,8 +436,8 @@ fn asked_error(scene: &Scene) -> f64 {
     0.01 * scene.solver.max_error_percent
 }
 
-pub(super) fn inertia(scene: &Scene) -> Inertia {
-    entry(scene).inertia
+pub(super) fn has_lumped_mass(scene: &Scene) -> bool {
+    entry(scene).is_explicit()
 }
 
 /// Sets the status of a motion that has not stopped.

@@ -1,6 +1,6 @@
 //! Views of a simulation: results that only a search for an equilibrium has, and results that only a motion has.
 
-use super::motion::{Moment, TimeStepping, inertia};
+use super::motion::{Moment, TimeStepping, has_lumped_mass};
 use super::search::Search;
 use super::{Body, Process, Simulation, Status};
 use crate::dynamics::{Counts, Ledger, Momentum};
@@ -115,7 +115,7 @@ impl<'a> Motion<'a> {
     /// Returns the momentum and angular momentum.
     pub fn momentum(self) -> Momentum {
         let Body { scene, problem, state, .. } = self.body;
-        Momentum::of(problem, &self.steps.mass, inertia(scene), state)
+        Momentum::of(problem, &self.steps.mass, has_lumped_mass(scene), state)
     }
 
     /// Returns the decision of `auto` for the last step; `None` for other methods and for explicit integrators.

@@ -38,14 +38,22 @@ pub enum Ink {
     Load,
     /// Beam theory.
     BeamTheory,
-    /// A method or an integrator, by its identifier.
-    Solution(&'static str),
+    /// A method or an integrator: the colours of its entry in the registry.
+    Solution([[u8; 3]; 2]),
     /// Unstable equilibria.
     Unstable,
     /// Present state of the scene.
     Scene,
     /// Red, green and blue, the same on each background.
     Fixed([u8; 3]),
+}
+
+impl Ink {
+    /// Returns the colour of a setting's integrator, or of its method at rest.
+    pub(crate) fn of(setting: &Setting) -> Self {
+        let integrator = setting.stepping.map(|stepping| stepping.integrator.entry().colors);
+        Self::Solution(integrator.unwrap_or(setting.method.entry().colors))
+    }
 }
 
 /// Line or mark of a series.

@@ -1,7 +1,6 @@
 //! Measurements over many solves.
 
 mod claim;
-mod colors;
 mod convergence;
 pub mod extremes;
 pub mod figure;
@@ -27,7 +26,6 @@ mod trade;
 
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub use claim::{Claim, driven_texts, floor_text, rho_text};
-pub use colors::color;
 pub use fine::moved_points;
 #[cfg(feature = "app")]
 pub(crate) use live::LiveReference;

@@ -113,7 +113,7 @@ fn pieces(path: &LoadPath, points: &[FigurePoint]) -> Vec<(Vec<FigurePoint>, Pat
         let is_stable = states.iter().all(|s| s.unstable_modes == 0);
         let line = match path.states_before_jump == Some(i + 1) {
             true => ("it jumps", Ink::Unstable, Mark::Dots),
-            false if is_stable => ("load path", Ink::Solution(MethodKind::Newton.id()), Mark::Line),
+            false if is_stable => ("load path", Ink::Solution(MethodKind::Newton.entry().colors), Mark::Line),
             false => ("unstable", Ink::Unstable, Mark::Dashes),
         };
         match pieces.last_mut().filter(|(_, last)| *last == line) {

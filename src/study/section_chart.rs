@@ -81,7 +81,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
             (0..BEAM_POINTS).map(along).map(|along| vec![stress(along), along]).collect()
         };
         let series = |name: &str, ink, mark, points| FigureSeries::new(render(&name.into()), ink, mark, points);
-        let method = Ink::Solution(scene.solver.method.id());
+        let method = Ink::of(&Setting::of(scene));
         let mut series = vec![
             series(names[0], method, Mark::Line, recovered.collect()),
             series(names[1], Ink::BeamTheory, Mark::Dashes, beam()),
@@ -120,7 +120,7 @@ pub fn forces(sections: &[Section], scene: &Scene, contexts: &[Context; 3], rend
         let SectionComponent { name, unit, of: value, .. } = COMPONENTS[i];
         let within = contexts[i];
         let value = |forces: &SectionForces| within.rounded(value(forces));
-        let (ink, name) = (Ink::Solution(scene.solver.method.id()), render(&name.into()));
+        let (ink, name) = (Ink::of(&Setting::of(scene)), render(&name.into()));
         let points = sections.iter().map(|section| vec![section.line.at.x, value(&section.forces)]);
         let values = || sections.iter().map(|section| value(&section.forces));
         let [low, high] = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];

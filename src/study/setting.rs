@@ -48,7 +48,7 @@ impl Setting {
         Self { element, cells, method: MethodKind::Newton, iterations: 0, stepping: None }
     }
 
-    /// Returns the identifier of the integrator, or of the method at rest: its settings are drawn in one colour.
+    /// Returns the identifier of the integrator, or of the method at rest.
     pub(crate) fn series(&self) -> &'static str {
         self.stepping.map_or(self.method.id(), |stepping| stepping.integrator.id())
     }

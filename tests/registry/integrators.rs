@@ -2,17 +2,21 @@
 
 use crate::common::motion::{beam, grab, vibrating, with};
 use crate::common::*;
-use crate::{Test, suite};
+use crate::{Test, has_own_colors, suite};
 use libtest_mimic::Trial;
 
 const TESTS: &[Test<IntegratorKind>] = tests! {
     the_error_has_the_stated_order_in_the_step a_free_body_falls the_ledger_closes
     damping_removes_the_energy_of_rayleighs_formula linear_theory_is_the_limit_of_small_loads
-    motion_is_reproduced_to_the_last_bit
+    motion_is_reproduced_to_the_last_bit its_colour_is_its_own
 };
 
 pub fn trials() -> Vec<Trial> {
     suite("integrator", IntegratorKind::all().map(|kind| (kind.id().to_owned(), kind)), TESTS)
+}
+
+fn its_colour_is_its_own(kind: IntegratorKind) {
+    has_own_colors(kind.entry().colors);
 }
 
 /// Returns a step that suits the integrator; for explicit ones, a step far below the critical one.

@@ -18,6 +18,8 @@ mod scenes;
 use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
+use warpbeam::IntegratorKind;
+use warpbeam::method::METHODS;
 
 fn main() -> ExitCode {
     let args = Arguments::from_args();
@@ -34,6 +36,15 @@ fn main() -> ExitCode {
 
 /// Name and function of a test that every entry of a registry must pass.
 type Test<T> = (&'static str, fn(T));
+
+/// Asserts that no other method or integrator has similar colours.
+fn has_own_colors(colors: [[u8; 3]; 2]) {
+    for theme in [0, 1] {
+        let all = METHODS.iter().map(|m| m.colors).chain(IntegratorKind::all().map(|kind| kind.entry().colors));
+        let apart = |a: [u8; 3]| a.iter().zip(colors[theme]).map(|(a, b)| u32::from(a.abs_diff(b))).sum::<u32>();
+        assert_eq!(all.filter(|other| apart(other[theme]) <= 80).count(), 1, "{colors:?}");
+    }
+}
 
 /// Returns every test for every entry, named `suite::entry::test`.
 fn suite<T: Copy + Send + 'static>(

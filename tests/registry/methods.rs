@@ -1,12 +1,11 @@
 //! Tests that every method must pass.
 
 use crate::common::*;
-use crate::{Test, suite};
+use crate::{Test, has_own_colors, suite};
 use libtest_mimic::Trial;
-use warpbeam::study::color;
 
 const TESTS: &[Test<MethodKind>] = tests! {
-    the_id_is_the_name_in_scene_files no_other_method_has_the_same_colour an_axial_bar_stretches_by_pl_over_ea
+    the_id_is_the_name_in_scene_files its_colour_is_its_own an_axial_bar_stretches_by_pl_over_ea
     without_load_nothing_moves extremes_stay_finite an_edited_load_has_the_solution_of_a_start_at_rest
     a_huge_load_does_not_affect_later_solves a_restored_state_continues_as_the_saved_one
     a_running_state_is_reported_as_running
@@ -21,10 +20,8 @@ fn the_id_is_the_name_in_scene_files(kind: MethodKind) {
     assert_eq!(kind.entry().kind, kind);
 }
 
-fn no_other_method_has_the_same_colour(kind: MethodKind) {
-    for dark in [false, true] {
-        assert_eq!(METHODS.iter().filter(|m| color(m.id, dark) == color(kind.id(), dark)).count(), 1);
-    }
+fn its_colour_is_its_own(kind: MethodKind) {
+    has_own_colors(kind.entry().colors);
 }
 
 /// The extension is δ = P L / (E A) on every mesh.

@@ -240,7 +240,7 @@ pub(crate) fn show_motion(ui: &mut Ui, chosen: &mut MotionPlot, session: &Sessio
     let (y, series) = match chosen {
         MotionPlot::Energy => (FigureQuantity::new(tr("energy"), "J"), energies(&playback.history, seconds, &palette)),
         MotionPlot::Tip => {
-            let look = (integrator.id(), Ink::Solution(integrator.id()));
+            let look = (integrator.id(), Ink::of(&Setting::of(session.scene())));
             (FigureQuantity::new(probe, "m"), vec![line(look, (&playback.history, seconds), |s| s.displacement[axis])])
         }
     };

@@ -12,6 +12,7 @@ use crate::app::viewport::body_view::BodyView;
 use crate::app::viewport::probe;
 use crate::app::viewport::projection::{DrawnBody, Projection};
 use crate::section::Section;
+use crate::study::figure::Ink;
 use crate::study::section_chart;
 
 /// Content of the overlays.
@@ -120,7 +121,7 @@ fn outlines(painter: &Painter, overlay: &Overlay<'_>, palette: &Palette) {
         draw(&rest, Stroke::new(1.0, palette.rest));
     }
     if let Some(linear) = overlay.ghost {
-        draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.of_id(MethodKind::Linear.id())));
+        draw(&|n| drawn(n, linear), Stroke::new(1.5, palette.ink(Ink::Solution(MethodKind::Linear.entry().colors))));
     }
     if !overlay.apart {
         draw(&|n| overlay.body.positions[n as usize], Stroke::new(1.5, palette.solution(overlay.named())));
@@ -535,7 +536,7 @@ fn key(painter: &Painter, overlay: &Overlay<'_>, session: &Session, palette: &Pa
     lines.push((palette.solution(overlay.named()), Some(LegendMark::Line), own));
     if let Some(solution) = session.linear().filter(|_| overlay.ghost.is_some()) {
         let text = values(MethodKind::Linear.id(), [linear, None], solution);
-        lines.push((palette.of_id(MethodKind::Linear.id()), Some(LegendMark::Line), text));
+        lines.push((palette.ink(Ink::Solution(MethodKind::Linear.entry().colors)), Some(LegendMark::Line), text));
     }
     if !overlay.exact.is_empty() {
         // A body in place of a search has another load.

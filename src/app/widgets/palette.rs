@@ -5,7 +5,7 @@ use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, 
 
 use crate::app::prelude::*;
 use crate::render::colormap::ColorMap;
-use crate::study::color;
+use crate::study::Setting;
 use crate::study::figure::Ink;
 
 /// Size of body text, points.
@@ -88,11 +88,6 @@ impl Palette {
         if visuals.dark_mode { DARK } else { LIGHT }
     }
 
-    /// Returns the colour of a method or an integrator by its id, which is the same for body, legend and plots.
-    pub(crate) fn of_id(&self, id: &'static str) -> Color32 {
-        self.ink(Ink::Solution(id))
-    }
-
     /// Returns the colour of a line or a text of a chart.
     pub(crate) fn ink(&self, ink: Ink) -> Color32 {
         let fixed = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
@@ -103,7 +98,7 @@ impl Palette {
             Ink::Reference => self.exact,
             Ink::Limit => self.secondary,
             Ink::Load => self.load,
-            Ink::Solution(id) => fixed(color(id, self.dark)),
+            Ink::Solution(colors) => fixed(colors[usize::from(self.dark)]),
             Ink::Unstable => self.error,
             Ink::Fixed(color) => fixed(color),
         }
@@ -111,10 +106,7 @@ impl Palette {
 
     /// Returns the colour of a scene's method, or of its integrator for a motion.
     pub(crate) fn solution(&self, scene: &Scene) -> Color32 {
-        match scene.analysis {
-            Analysis::Static => self.of_id(scene.solver.method.id()),
-            Analysis::Dynamic => self.of_id(scene.dynamics.integrator.id()),
-        }
+        self.ink(Ink::of(&Setting::of(scene)))
     }
 
     /// Returns the colours of the kinds of energy: kinetic, elastic, potential, dissipated, lost, put in.
@@ -273,8 +265,8 @@ mod tests {
                     assert!(ratio >= 3.0, "{field:?} at {i}/255 on {:?}: {ratio}", p.canvas);
                 }
             }
-            let methods = METHODS.iter().map(|m| p.of_id(m.id));
-            let integrators = INTEGRATORS.iter().map(|i| p.of_id(i.id));
+            let methods = METHODS.iter().map(|m| p.ink(Ink::Solution(m.colors)));
+            let integrators = INTEGRATORS.iter().map(|i| p.ink(Ink::Solution(i.colors)));
             let lines = [p.exact, p.rest, p.support, p.absent];
             for color in methods.chain(integrators).chain(lines).chain(p.energies()) {
                 assert!(contrast(color, p.canvas) >= 3.0, "{color:?}: {}", contrast(color, p.canvas));

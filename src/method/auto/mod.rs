@@ -33,6 +33,7 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
             theory or the old factorization while accurate enough, load steps as a last resort.",
     start: || Box::<Auto>::default(),
     motion: MotionMethod::Adaptive,
+    colors: [[0, 120, 80], [110, 220, 140]],
 };
 
 /// Fraction of the requested error that the estimates may reach; the rest is a margin for what they omit.

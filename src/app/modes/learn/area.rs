@@ -13,7 +13,7 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     let palette = Palette::new(ui.visuals());
     let linear = session.linear().filter(|_| method != MethodKind::Linear).map(|body| (body, MethodKind::Linear));
     for (body, method) in [(session.simulation(), method)].into_iter().chain(linear) {
-        row(ui, &palette, method.id(), Some(body.area_change()), palette.of_id(method.id()));
+        row(ui, &palette, method.id(), Some(body.area_change()), palette.ink(Ink::Solution(method.entry().colors)));
     }
     let outline =
         session.known_reference().filter(|_| session.simulation().is_at_rest()).map(|reference| &reference.outline);

@@ -94,7 +94,7 @@ fn plot(ui: &mut Ui, session: &Session) {
         drawing.line(&[line(0.0), line(most)], Ink::Reference, DASHES);
     }
     let places: Vec<_> = points().map(|(k, r)| place(k, r)).collect();
-    let ink = Ink::Solution(session.scene().solver.method.id());
+    let ink = Ink::of(&Setting::of(session.scene()));
     places.iter().for_each(|at| drawing.circle(*at, 3.0, ink, None));
     drawing.line(&places, ink, solid(1.6));
     drawing.clip(None);

@@ -367,8 +367,8 @@ fn legend(ui: &mut Ui, moves: bool) {
     let palette = Palette::new(ui.visuals());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(10.0, 0.0);
-        let methods = METHODS.iter().map(|m| (m.id, palette.of_id(m.id)));
-        let integrators = INTEGRATORS.iter().map(|i| (i.id, palette.of_id(i.id)));
+        let methods = METHODS.iter().map(|m| (m.id, palette.ink(Ink::Solution(m.colors))));
+        let integrators = INTEGRATORS.iter().map(|i| (i.id, palette.ink(Ink::Solution(i.colors))));
         let names: Vec<_> = if moves { integrators.collect() } else { methods.collect() };
         for (id, color) in names {
             ui.label(RichText::new(tr(id)).small().strong().color(color));

@@ -279,7 +279,7 @@ impl<'a> StripChart<'a> {
     fn paint(&self, ui: &Ui, scene: &Scene, load: Option<(f64, Option<f64>)>) {
         let (chart, mut drawing) = (&self.chart, ChartPainter::new(ui, self.corner));
         chart.grid(&mut drawing);
-        let ink = |strip: &Strip| if is_used(strip, scene) { Ink::Text } else { Ink::Solution(strip.setting.series()) };
+        let ink = |strip: &Strip| if is_used(strip, scene) { Ink::Text } else { Ink::of(&strip.setting) };
         chart.draw(&mut drawing, &|name| said(name), &ink);
         chart.name(&mut drawing, 33.0, &|name| said(name));
         if let Some((factor, displacement)) = load {

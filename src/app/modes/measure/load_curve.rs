@@ -113,9 +113,12 @@ impl Curve {
             return;
         }
         figure.series.extend(linear.map(|u| {
-            let (id, points) = (MethodKind::Linear.id(), vec![vec![0.0; 3], vec![full, u.x, u.y]]);
-            let name = format!("{} {}", scene.element().id(), tr(id));
-            FigureSeries { may_leave: true, ..FigureSeries::new(name, Ink::Solution(id), Mark::Dashes, points) }
+            let (linear, points) = (MethodKind::Linear.entry(), vec![vec![0.0; 3], vec![full, u.x, u.y]]);
+            let name = format!("{} {}", scene.element().id(), tr(linear.id));
+            FigureSeries {
+                may_leave: true,
+                ..FigureSeries::new(name, Ink::Solution(linear.colors), Mark::Dashes, points)
+            }
         }));
         let at_load = |series: &FigureSeries| {
             series.points.iter().find_map(|point| match point[..] {
