@@ -6,8 +6,7 @@ use super::correction::{Accuracy, Weights};
 use super::step::{Counts, Memory, Solves, StepEnergy, StepError, combine, work};
 use crate::assembly::{Kinematics, Mass, MouseSpring, Problem};
 use crate::element::{StrainRate, Tangent};
-use crate::method::MotionMethod;
-use crate::scene::Damping;
+use crate::scene::{Damping, MethodKind};
 use crate::solver::SolverError;
 use crate::state::State;
 use crate::timings::{Timings, timed};
@@ -64,7 +63,7 @@ pub(crate) struct StageSolver<'a> {
     pub problem: &'a mut Problem,
     pub mass: &'a Mass,
     pub damping: Damping,
-    pub method: MotionMethod,
+    pub method: MethodKind,
     pub kinematics: Kinematics,
     pub solves: Solves,
     /// Error requested for the whole motion, as a fraction.
@@ -148,7 +147,7 @@ impl StageSolver<'_> {
             return None;
         }
         let Tangent { warped, geometric, definite } = stage.tangent;
-        let turns = self.kinematics == Kinematics::Corotated && self.method != MotionMethod::Warped;
+        let turns = self.kinematics == Kinematics::Corotated && self.method != MethodKind::Warped;
         Some(Tangent { warped, geometric: if turns { geometric } else { 0.0 }, definite })
     }
 
@@ -296,7 +295,7 @@ impl StageSolver<'_> {
 
     /// Returns `true` if corrections are computed with factors of earlier matrices (`auto`).
     fn keeps_factors(&self) -> bool {
-        self.method == MotionMethod::Adaptive && self.kinematics == Kinematics::Corotated
+        self.method == MethodKind::Auto && self.kinematics == Kinematics::Corotated
     }
 
     /// Performs u ← u + K⁻¹ r, with a factor of K if `tangent` is given, else with the existing factor. The matrix K is
@@ -316,7 +315,7 @@ impl StageSolver<'_> {
                 self.linearize(stage, Some(tangent), state);
             }
             self.factorize(stage, tangent, state)?;
-            if self.method == MotionMethod::Adaptive {
+            if self.method == MethodKind::Auto {
                 let weights = self.weights(stage);
                 self.memory.corrector.keep(weights, self.problem.system(), state);
             }

@@ -2,7 +2,7 @@
 //! grow far too long.
 
 use super::status::StallDetector;
-use super::{Criteria, IterationError, Method, MethodEntry, MotionMethod, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -13,7 +13,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "linear",
     about: "Linear FEM: one solve, accurate only for small rotations; under larger ones the area of the body grows.",
     start: || Box::<Linear>::default(),
-    motion: MotionMethod::Linear,
     colors: [[200, 90, 0], [240, 150, 60]],
 };
 

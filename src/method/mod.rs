@@ -37,23 +37,8 @@ pub struct MethodEntry {
     pub about: &'static str,
     /// Constructor.
     pub(crate) start: fn() -> Box<dyn Method>,
-    /// How time steps are solved.
-    pub motion: MotionMethod,
     /// Colours of its results in charts, on a light and on a dark background.
     pub colors: [[u8; 3]; 2],
-}
-
-/// How the stages of time steps are solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MotionMethod {
-    /// Linear theory.
-    Linear,
-    /// Corotated, with the article's matrix A.
-    Warped,
-    /// Corotated, with the exact tangent A + G.
-    Exact,
-    /// Linear theory or earlier factors while they serve, else the exact tangent.
-    Adaptive,
 }
 
 /// All methods; to add one, write a file in this folder, and a line here and in `MethodKind::entry`.
@@ -78,7 +63,7 @@ impl MethodKind {
 
     /// Returns `true` if the method moves a body by linear theory alone.
     pub(crate) fn moves_linearly(self) -> bool {
-        self.entry().motion == MotionMethod::Linear
+        self == Self::Linear
     }
 }
 

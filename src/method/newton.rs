@@ -21,7 +21,7 @@ use nalgebra::Vector2;
 use super::iteration::ROUNDING;
 use super::path::{PathEndReason, PathEvents, PathFollower, PathProgress, StaticEquations};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
-use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Reason, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, Reason, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::continuation::ContinuationPoint;
 use crate::element::Tangent;
@@ -35,7 +35,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     id: "newton",
     about: "Newton with the exact tangent A + G: an exact, stable equilibrium in a few solves, also under large loads.",
     start: || Box::<Newton>::default(),
-    motion: MotionMethod::Exact,
     colors: [[0, 100, 180], [90, 200, 250]],
 };
 

@@ -6,7 +6,7 @@
 //! Large rotations of supports are applied in parts, one iteration each, and the load with them.
 
 use super::status::StallDetector;
-use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, Restart, Verdict};
 use crate::assembly::Kinematics;
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -18,7 +18,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "Warped stiffness: the article's fixed-point iteration, in which the stiffness of every element rotates \
             with it. Allows large rotations, but diverges under large loads.",
     start: || Box::<Warped>::default(),
-    motion: MotionMethod::Warped,
     colors: [[128, 50, 190], [202, 160, 255]],
 };
 

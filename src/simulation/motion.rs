@@ -9,7 +9,7 @@ use crate::dynamics::{
     StopReason, critical_step,
 };
 use crate::element::StrainRate;
-use crate::method::{Decision, MotionMethod};
+use crate::method::Decision;
 use crate::scene::{DynamicsSettings, Load, MethodKind, Scene, Start};
 use crate::section::{MotionBalance, NodalBalance};
 use crate::state::{State, largest};
@@ -42,7 +42,7 @@ pub(super) struct TimeStepping {
     start: State,
     middle: State,
     pub(super) counts: Counts,
-    method: MotionMethod,
+    method: MethodKind,
     linear: LinearTheory,
     /// Kind of the last step.
     pub(super) decision: Decision,
@@ -94,7 +94,7 @@ impl TimeStepping {
     /// Returns a motion that starts from the current state and velocity.
     pub(super) fn new(body: &mut Body) -> Result<Self, SimulationError> {
         let Body { scene, problem, state, .. } = body;
-        let method = scene.solver.method.entry().motion;
+        let method = scene.solver.method;
         let mass = Mass::new(problem.system(), scene.material.area_density());
         let mut motion = Self {
             memory: Memory::new(problem.system())?,
@@ -156,7 +156,7 @@ impl TimeStepping {
     /// Continues after an edit; `before` is the previous scene. Displacement and velocity are kept.
     pub(super) fn edit(&mut self, body: &mut Body, before: &Scene, change: Change) -> Result<(), SimulationError> {
         let Body { scene, problem, state, .. } = body;
-        self.method = scene.solver.method.entry().motion;
+        self.method = scene.solver.method;
         let mass_changes = scene.material.area_density() != before.material.area_density();
         if change == Change::Unknowns {
             self.memory = Memory::new(problem.system())?;
@@ -356,13 +356,13 @@ impl TimeStepping {
     }
 
     pub(super) fn kinematics(&self) -> Kinematics {
-        let linear = self.method == MotionMethod::Linear || self.linear.in_use;
+        let linear = self.method == MethodKind::Linear || self.linear.in_use;
         if linear { Kinematics::Linear } else { Kinematics::Corotated }
     }
 
     /// Returns `true` if the method is `auto`, which chooses how each step is solved.
     pub(super) fn decides(&self, scene: &Scene) -> bool {
-        self.method == MotionMethod::Adaptive && !entry(scene).is_explicit()
+        self.method == MethodKind::Auto && !entry(scene).is_explicit()
     }
 
     /// Returns `true` if nothing has moved for a while, and no pulse is to come.

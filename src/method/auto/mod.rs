@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 use self::expansion::{Expansion, relative_size};
 use super::newton::{MAX_GROWTH, Newton, size, softens};
 use super::status::{LONGEST_STEP, StepLengths, farthest};
-use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, MotionMethod, PathEvents, Restart, Verdict};
+use super::{Criteria, IterationError, Method, MethodEntry, MethodReport, PathEvents, Restart, Verdict};
 use crate::assembly::{Forces, Kinematics};
 use crate::element::Tangent;
 use crate::scene::MethodKind;
@@ -32,7 +32,6 @@ pub(super) const ENTRY: MethodEntry = MethodEntry {
     about: "As few computations as the estimated error allows for the required accuracy: no solve if nothing changed, linear \
             theory or the old factorization while accurate enough, load steps as a last resort.",
     start: || Box::<Auto>::default(),
-    motion: MotionMethod::Adaptive,
     colors: [[0, 120, 80], [110, 220, 140]],
 };
 
