@@ -252,8 +252,6 @@ pub struct Jump {
     pub factor: f64,
     /// Largest displacement of a node in the jump at this load factor, m; `None` if no stable state was found beyond.
     pub distance: Option<f64>,
-    /// `true` if the state beyond the jump is on the same path; `false` if a descent of the energy led to it.
-    pub is_on_path: bool,
 }
 
 /// Critical point on the path, at which the exact tangent is singular and another path crosses this one.
@@ -268,9 +266,9 @@ pub struct Bifurcation {
 
 impl Jump {
     /// Returns the jump from a limit point to a state, if one is known.
-    fn from(limit: &ContinuationPoint<State>, to: Option<&State>, is_on_path: bool) -> Self {
+    fn from(limit: &ContinuationPoint<State>, to: Option<&State>) -> Self {
         let distance = to.map(|to| largest_distance(&limit.state.displacement, &to.displacement));
-        Self { factor: limit.factor, distance, is_on_path }
+        Self { factor: limit.factor, distance }
     }
 
     /// Returns `true` if the body does not come to rest where it has left its path.
@@ -489,7 +487,7 @@ impl PathFollower {
                 return PathProgress::Continue;
             }
             let landing = self.path.between(equations, &from, &to, limit.factor);
-            let jump = landing.as_ref().map(|landing| Jump::from(&limit, Some(&landing.state), true));
+            let jump = landing.as_ref().map(|landing| Jump::from(&limit, Some(&landing.state)));
             let Some((landing, jump)) = landing.zip(jump.filter(|jump| jump.is_far(equations.problem))) else {
                 // A path that returns to its limit point is a loop.
                 return self.start_descent();
@@ -550,7 +548,7 @@ impl PathFollower {
                 Descent::Lower => {}
                 Descent::Stable => {
                     let Some(mut next) = Self::start_at(equations, state, factor, self.end) else { break };
-                    let jump = Jump::from(&start, Some(&next.last.state), false);
+                    let jump = Jump::from(&start, Some(&next.last.state));
                     if jump.is_far(equations.problem) {
                         self.events.jump.get_or_insert(jump);
                     }
@@ -568,7 +566,7 @@ impl PathFollower {
                 Descent::Stuck => break,
             }
         }
-        self.events.jump.get_or_insert(Jump::from(&limit, None, false));
+        self.events.jump.get_or_insert(Jump::from(&limit, None));
         self.limit = Some(limit);
         PathProgress::Ended(PathEndReason::NoEquilibrium)
     }

@@ -165,7 +165,7 @@ impl Claim {
     }
 
     /// Returns the claim that the path from rest jumps.
-    fn jumps(Jump { factor, distance, is_on_path }: Jump, drive: &Drive) -> Self {
+    fn jumps(Jump { factor, distance }: Jump, drive: &Drive) -> Self {
         let percent = load_percent(factor);
         let text = match distance.map(|distance| engineering(distance, "m")) {
             None => sentence!(
@@ -173,14 +173,8 @@ impl Claim {
                 percent,
                 drive
             ),
-            Some(distance) if is_on_path => sentence!(
-                "jumped: beyond the limit point at %{percent} of %{drive}, the next equilibrium is %{distance} away",
-                percent,
-                drive,
-                distance
-            ),
             Some(distance) => sentence!(
-                "jumped: beyond the limit point at %{percent} of %{drive}, the body comes to rest %{distance} away",
+                "jumped: beyond the limit point at %{percent} of %{drive}, the next equilibrium is %{distance} away",
                 percent,
                 drive,
                 distance

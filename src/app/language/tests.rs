@@ -63,9 +63,8 @@ fn the_sentences_of_the_library_are_translated() {
         let SceneError::Invalid { invalid, .. } = Scene::from_toml(toml).unwrap_err() else { unreachable!("{toml}") };
         texts.push(both(&invalid));
     }
-    let jumps = [(None, false, Drive::Loads), (Some(0.1), true, Drive::Supports), (Some(0.1), false, Drive::Both)];
-    for (most, is_on_path, drive) in jumps {
-        let jump = Some(Jump { factor: 0.5, distance: most, is_on_path });
+    for (most, drive) in [(None, Drive::Loads), (Some(0.1), Drive::Supports), (Some(0.1), Drive::Both)] {
+        let jump = Some(Jump { factor: 0.5, distance: most });
         let path = PathSummary { jump, buckling: None, critical: most, drive, supports_work: None, elsewhere: most };
         texts.extend(path.claims().map(|claim| both(&claim)));
     }
