@@ -14,12 +14,12 @@ use crate::rotation::Rotation;
 use crate::scene::Beam;
 use crate::state::{largest, largest_distance};
 
-/// Largest number of unknowns of a mesh, of a quick and of a full search.
-const MAX_UNKNOWNS: [usize; 2] = [10_000, 700_000];
+/// Largest number of unknowns of a mesh, of a search of each [`Extent`].
+const MAX_UNKNOWNS: [usize; 3] = [3500, 10_000, 700_000];
 /// Largest sum of unknowns over all solves.
-const MAX_WORK: [f64; 2] = [5e5, f64::INFINITY];
+const MAX_WORK: [f64; 3] = [1e5, 5e5, f64::INFINITY];
 /// Error, relative to the displacement, below which no finer mesh is tried.
-const GOOD_ENOUGH: [f64; 2] = [1e-3, 1e-4];
+const GOOD_ENOUGH: [f64; 3] = [1e-3, 1e-3, 1e-4];
 
 /// Returns the element of fine solutions: the one of the highest degree that the scene's mesh can have, which converges
 /// fastest.
@@ -138,7 +138,7 @@ fn on_fine_meshes(
         }
         if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
-            work -= FOLD_SHARE * extent.pick(MAX_WORK);
+            work -= FOLD_SHARE * MAX_WORK[extent as usize];
             status = solve(&mut simulation, extent, &mut work, observe)?;
         }
         let converged = match status {
@@ -164,7 +164,7 @@ fn on_fine_meshes(
         let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, extent);
         let next = 4 * unknowns;
         let next_fits =
-            next <= extent.pick(MAX_UNKNOWNS) && work + MIN_SOLVES_LEFT * next as f64 <= extent.pick(MAX_WORK);
+            next <= MAX_UNKNOWNS[extent as usize] && work + MIN_SOLVES_LEFT * next as f64 <= MAX_WORK[extent as usize];
         let carried = (!fine_enough && next_fits).then(|| meshes.refine(simulation.displacement()));
         if converged {
             finest = Some(simulation);
@@ -246,15 +246,15 @@ fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, extent: Exte
     let Some(last) = solutions.last() else { return false };
     let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let counts = last.iter().zip(errors(solutions, has_point)).filter(|(u, _)| u.norm() > LITTLE * largest);
-    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= extent.pick(GOOD_ENOUGH) * u.norm()))
+    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= GOOD_ENOUGH[extent as usize] * u.norm()))
 }
 
 /// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
 fn solve(simulation: &mut Simulation, extent: Extent, work: &mut f64, observe: Observer<'_>) -> Result<Status> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
-    let fraction = (unknowns as f64 / extent.pick(MAX_UNKNOWNS) as f64).min(1.0);
-    while *simulation.status() == Status::Running && *work <= extent.pick(MAX_WORK) {
+    let fraction = (unknowns as f64 / MAX_UNKNOWNS[extent as usize] as f64).min(1.0);
+    while *simulation.status() == Status::Running && *work <= MAX_WORK[extent as usize] {
         check(observe(Progress { fraction, now: Some(&now) }))?;
         let before = simulation.iterations();
         simulation.step();
@@ -284,7 +284,7 @@ impl Meshes {
         let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
         // A mesh given by the caller is kept.
         let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-        if 4 * unknowns_of(&own, element.entry()) > extent.pick(MAX_UNKNOWNS) {
+        if 4 * unknowns_of(&own, element.entry()) > MAX_UNKNOWNS[extent as usize] {
             return Err(StudyError::TooFine { elements: own.element_count() });
         }
         // The same nodes are used for the scene's points on every mesh, including the scene's own.
@@ -372,7 +372,7 @@ fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
-    let nodes = 0.5 * Extent::Quick.pick(MAX_UNKNOWNS) as f64;
+    let nodes = 0.5 * MAX_UNKNOWNS[Extent::Quick as usize] as f64;
     let cells = |short: f64, extra: usize| {
         (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
     };

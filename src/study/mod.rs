@@ -6,8 +6,6 @@ pub mod extremes;
 pub mod figure;
 mod fine;
 pub mod limits;
-#[cfg(feature = "app")]
-mod live;
 mod load_curve;
 mod load_path;
 mod measure;
@@ -27,8 +25,6 @@ mod trade;
 pub use crate::method::{Bifurcation, Drive, Jump, PathEndReason, PathEvents};
 pub use claim::{Claim, driven_texts, floor_text, rho_text};
 pub use fine::moved_points;
-#[cfg(feature = "app")]
-pub(crate) use live::LiveReference;
 pub use load_curve::{LoadCurve, Sample};
 pub use load_path::{LoadPath, PathFromRest, PathState, PathSummary, support_name, support_text};
 pub use motion::time_of_motion;

@@ -97,6 +97,9 @@ pub(super) type Result<T, E = StudyError> = std::result::Result<T, E>;
 /// Extent of a study, or of the search for a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
+    /// The search for a reference while a load is dragged stops at meshes of 3,500 unknowns, within a twentieth of a second.
+    /// A study is the same as a quick one.
+    Drag,
     /// A study measures coarse meshes only. A search for a reference stops at meshes of about 10,000 unknowns and the work
     /// of about 30 solves on them, after a second or two.
     Quick,

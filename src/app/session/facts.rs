@@ -1,6 +1,8 @@
 //! Expensive results of a scene, computed in the background; and the reference solution that follows a dragged load in a
 //! thread of its own, where one load is solved at a time, and the newest is next.
 
+use std::ops::ControlFlow;
+
 use serde::{Deserialize, Serialize};
 
 use super::*;
@@ -14,8 +16,8 @@ use crate::scene::{DynamicsSettings, SolverSettings};
 use crate::simulation::Equilibrium;
 use crate::study::limits::MethodLimits;
 use crate::study::{
-    Extent, LiveReference, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError,
-    time_from_rest, time_of_motion,
+    Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError, time_from_rest,
+    time_of_motion,
 };
 
 /// Load–displacement curve of a scene at rest.
@@ -198,15 +200,12 @@ impl Live {
     }
 }
 
-type LiveTask = Task<(), (Option<Box<LiveReference>>, Option<Box<Live>>)>;
-
 /// Reference solution that follows the load.
 #[derive(Default)]
 pub(crate) struct Follower {
     /// Key of the scene that was solved last, or is being solved.
     asked: Option<Scene>,
-    solutions: Option<Box<LiveReference>>,
-    pub running: Option<LiveTask>,
+    pub running: Option<Task<(), Option<Box<Live>>>>,
     /// Last reference; `None` if the last load has none that is found soon.
     pub known: Option<Box<Live>>,
 }
@@ -217,7 +216,7 @@ impl Follower {
         let Some(task) = &self.running else { return false };
         match task.poll() {
             Update::None | Update::Progress(()) => return true,
-            Update::Done(found) => (self.solutions, self.known) = found,
+            Update::Done(found) => self.known = found,
             Update::Died => self.known = None,
         }
         self.running = None;
@@ -235,12 +234,10 @@ impl Follower {
             return false;
         }
         self.asked = Some(key.clone());
-        let (scene, solutions) = (scene.clone(), self.solutions.take());
+        let scene = scene.clone();
         let work = move |_: &Reporter<_, _>| {
-            let solutions = solutions.filter(|solutions| solutions.suits(&scene));
-            let mut solutions = solutions.or_else(|| LiveReference::new(&scene).map(Box::new));
-            let reference = solutions.as_mut().and_then(|solutions| solutions.follow(&scene));
-            (solutions, reference.map(|reference| Box::new(Live { key, reference, own, linear })))
+            let reference = Reference::find(&scene, None, Extent::Drag, &|_| ControlFlow::Continue(())).ok()?;
+            Some(Box::new(Live { key, reference, own, linear }))
         };
         self.running = Task::start("follow", work).ok();
         self.running.is_some()
@@ -312,8 +309,8 @@ impl Session {
         self.facts.request_at_rest(&self.present.scene, shows_rho, is_busy, false) || follows || certifies
     }
 
-    /// Requests the reference that follows the load of a body of few unknowns, also at rest: its solutions are then ready
-    /// when a drag begins. Returns `true` while it is pending.
+    /// Requests the reference that follows the load of a body of few unknowns, also at rest: it is then known when a drag
+    /// begins. Returns `true` while it is pending.
     fn follow_reference(&mut self) -> bool {
         let simulation = &self.model.simulation;
         let is_found = simulation.status().is_success();
@@ -367,7 +364,6 @@ impl Session {
 
 #[cfg(test)]
 mod tests {
-    use std::ops::ControlFlow;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
@@ -399,6 +395,17 @@ mod tests {
             let scene = open(&crate::scene::Source { name: id.into(), assignments: Vec::new() }).unwrap();
             let all = [asked::<ReferenceFact>(&scene), asked::<CurveFact>(&scene), asked::<PathFact>(&scene)];
             assert!(all.iter().all(|asked| (1..4).contains(asked)), "{id}: {all:?}");
+        }
+    }
+
+    /// The reference that follows a load is found however far the load jumps.
+    #[test]
+    fn a_load_that_jumps_has_a_reference() {
+        let mut scene = open(&crate::scene::Source { name: "incline".into(), assignments: Vec::new() }).unwrap();
+        for factor in [1.0, -0.9, -1.1, -1.0, -0.5] {
+            scene.scale_loads(factor);
+            let found = Reference::find(&scene, None, Extent::Drag, &|_| ControlFlow::Continue(()));
+            assert!(found.unwrap().first().is_some(), "{factor}");
         }
     }
 
