@@ -350,22 +350,16 @@ impl ExactBeam {
         }
     }
 
-    /// Returns the outline of a beam of this height, m, around its computed axis, closed and counter-clockwise, at rest
-    /// and under the load, point by point; `None` for the bar, whose sides contract, and if the equilibrium cannot be
-    /// followed.
-    pub fn outline(&self, height: f64) -> Option<[Vec<Vector2<f64>>; 2]> {
+    /// Returns the displacements, m, of the lower and the upper end of sections at equal distances along a beam of this
+    /// height, m; `None` for the bar, whose sides contract, and if the equilibrium cannot be followed.
+    pub fn section_displacements(&self, height: f64) -> Option<Vec<[Vector2<f64>; 2]>> {
         let Self::Cantilever(beam) = self else { return None };
-        let axis = beam.axis()?;
-        let station = |i: usize| Vector2::new(beam.length * i as f64 / SEGMENTS as f64, 0.0);
-        let rest: Vec<Tip> = (0..axis.len()).map(|i| Tip { x: station(i), angle: 0.0 }).collect();
-        let around = |axis: &[Tip]| {
-            let offset =
-                |tip: &Tip, side: f64| tip.x + Vector2::new(-tip.angle.sin(), tip.angle.cos()) * (side * height);
-            let below = axis.iter().map(|tip| offset(tip, -0.5));
-            let above = axis.iter().rev().map(|tip| offset(tip, 0.5));
-            below.chain(above).chain(axis.first().map(|tip| offset(tip, -0.5))).collect()
+        let section = |(i, Tip { x, angle }): (usize, Tip)| {
+            let rest = Vector2::new(beam.length * i as f64 / SEGMENTS as f64, 0.0);
+            let turned = Vector2::new(-angle.sin(), angle.cos()) - Vector2::y();
+            [-0.5, 0.5].map(|side| x - rest + turned * (side * height))
         };
-        Some([around(&rest), around(&axis)])
+        Some(beam.axis()?.into_iter().enumerate().map(section).collect())
     }
 }
 

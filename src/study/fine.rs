@@ -5,9 +5,8 @@ use std::ops::ControlFlow;
 
 use super::convergence::remaining_error;
 use super::prelude::*;
-use super::reference::{MovedPoint, Reference, is_unstable, probes_of};
+use super::reference::{MovedPoint, Reference, first_probe, is_unstable, probes_of};
 use crate::assembly::Forces;
-use crate::element::ElementType;
 use crate::mesh::{bent, straightened};
 use crate::method::{Workspace, is_stable};
 use crate::rotation::Rotation;
@@ -116,61 +115,64 @@ fn on_fine_meshes(
     extent: Extent,
     observe: Observer<'_>,
 ) -> Result<Reference> {
-    let mut scene = prepared(original);
+    let mut scene = original.clone();
+    // Quadrilaterals of beams lock neither in bending nor near incompressibility.
+    scene.set_element(if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(&scene) });
+    (scene.solver.method, scene.solver.accept_after) = (MethodKind::Newton, 0);
+    scene.solver.max_iterations = MAX_ITERATIONS;
     scene.solver.tolerance = scene.solver.tolerance.min(TOLERANCE);
-    let (mut meshes, moved) = Meshes::of(&mut scene, near, extent)?;
+    let (mut mesh, moved) = coarsest(&mut scene, near, extent)?;
     let has_point = scene.acts_on_points();
     let mut work = 0.0;
     let mut solutions: Vec<Vec<Vector2<f64>>> = Vec::new();
-    let mut start: Option<Vec<Vector2<f64>>> = None;
-    let mut finest = None;
-    let mut fold: Vec<f64> = Vec::new();
+    let mut finest: Option<Simulation> = None;
+    let (mut solved, mut folds) = (Vec::new(), false);
     loop {
-        let mut simulation = Simulation::with_mesh(&scene, meshes.mesh()?)?;
+        let mut simulation = Simulation::with_mesh(&scene, bent_to_arch(&scene, &mesh)?)?;
+        let start = finest.as_ref().map(|coarser| coarser.mesh().prolonged(coarser.displacement()));
         if let Some(start) = &start {
             simulation.start_from(start).map_err(|_| StudyError::NoReference)?;
         }
-        let mut status = solve(&mut simulation, extent, &mut work, observe)?;
-        if status == Status::Converged && start.as_ref().is_some_and(|start| is_far(start, &simulation)) {
+        solve(&mut simulation, extent, &mut work, observe)?;
+        let is_solved = *simulation.status() == Status::Converged;
+        if is_solved && start.is_some_and(|start| is_far(&start, &simulation)) {
             // Near a critical load, the coarser solution may lead to another equilibrium.
             simulation.reset();
-            status = solve(&mut simulation, extent, &mut work, observe)?;
+            solve(&mut simulation, extent, &mut work, observe)?;
         }
-        if status == Status::Running && !solutions.is_empty() && has_fold(&scene, &simulation) {
+        if *simulation.status() == Status::Running && finest.is_some() && has_fold(&scene, &simulation) {
             // The bound needs the state that the fold leads to.
             work -= FOLD_SHARE * MAX_WORK[extent as usize];
-            status = solve(&mut simulation, extent, &mut work, observe)?;
+            solve(&mut simulation, extent, &mut work, observe)?;
         }
-        let converged = match status {
-            Status::Converged => true,
+        let next = 4 * simulation.system().dofs();
+        match (simulation.status(), &finest) {
+            (Status::Converged, _) if !has_fold(&scene, &simulation) => {
+                solutions.push(probes_of(&simulation));
+                solved = with_errors(&solutions, has_point);
+                finest = Some(simulation);
+            }
+            (_, None) => {}
+            (Status::Converged, Some(_)) => {
+                for ((u, error), folded) in solved.iter_mut().zip(probes_of(&simulation)) {
+                    let distance = (folded - *u).norm();
+                    *error = Some(error.unwrap_or(distance) + FARTHER_FOLD * distance);
+                }
+                folds = true;
+                break;
+            }
             // The budget is spent; use the previous meshes.
-            Status::Running if !solutions.is_empty() => break,
-            _ => false,
-        };
-        let unknowns = simulation.system().dofs();
-        let is_folded = converged && has_fold(&scene, &simulation);
-        let converged = converged && !is_folded;
-        if is_folded && let Some(last) = solutions.last() {
-            fold = probes_of(&simulation).iter().zip(last).map(|(folded, u)| (folded - u).norm()).collect();
+            (Status::Running, Some(_)) => break,
+            // If a finer mesh has no equilibrium near the coarser one's, the latter was not a solution of the continuous
+            // problem.
+            (_, Some(_)) => return Err(StudyError::NoReference),
+        }
+        let is_fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solved, extent);
+        let needed = work + MIN_SOLVES_LEFT * next as f64;
+        if is_fine_enough || next > MAX_UNKNOWNS[extent as usize] || needed > MAX_WORK[extent as usize] {
             break;
         }
-        if converged {
-            solutions.push(probes_of(&simulation));
-        } else if !solutions.is_empty() {
-            // If a finer mesh has no equilibrium near the coarser one's, the latter was not a solution of the
-            // continuous problem.
-            return Err(StudyError::NoReference);
-        }
-        let fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solutions, has_point, extent);
-        let next = 4 * unknowns;
-        let next_fits =
-            next <= MAX_UNKNOWNS[extent as usize] && work + MIN_SOLVES_LEFT * next as f64 <= MAX_WORK[extent as usize];
-        let carried = (!fine_enough && next_fits).then(|| meshes.refine(simulation.displacement()));
-        if converged {
-            finest = Some(simulation);
-        }
-        let Some(carried) = carried else { break };
-        start = converged.then_some(carried);
+        mesh = mesh.refined();
     }
     let simulation = finest.ok_or(StudyError::NoReference)?;
     // A state with inverted elements is not a solution of the continuous problem.
@@ -182,26 +184,11 @@ fn on_fine_meshes(
     if is_inverted || !is_stable(problem, state, 1.0, &mut forces, &mut workspace) {
         return Err(StudyError::NoReference);
     }
-    let mut errors = errors(&solutions, has_point);
-    for (error, distance) in errors.iter_mut().zip(&fold) {
-        *error = Some(error.unwrap_or(*distance) + FARTHER_FOLD * distance);
-    }
-    scene.solver.method = MethodKind::Linear;
-    let mut linear = Simulation::with_system(&scene, simulation.system().clone())?;
+    let mut linear = Simulation::with_system(&scene.with_method(MethodKind::Linear), simulation.system().clone())?;
     linear.solve();
-    let solved: Vec<_> = solutions.pop().unwrap_or_default().into_iter().zip(errors).collect();
-    Ok(Reference::of_finest(original, &simulation, &solved, &linear, moved, !fold.is_empty()))
-}
-
-/// Returns a scene with element and method of fine solutions.
-pub(super) fn prepared(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    // Quadrilaterals of beams lock neither in bending nor near incompressibility.
-    scene.set_element(if scene.beam.is_some() { ElementKind::Q4 } else { finest_element(&scene) });
-    scene.solver.method = MethodKind::Newton;
-    scene.solver.max_iterations = MAX_ITERATIONS;
-    scene.solver.accept_after = 0;
-    scene
+    let mut reference = Reference::of_finest(original, &simulation, &solved);
+    (reference.linear, reference.moved, reference.folds) = (first_probe(&linear).ok(), moved, folds);
+    Ok(reference)
 }
 
 /// Returns `true` if a solution is so far from the one it was started from that it may be another equilibrium.
@@ -232,25 +219,24 @@ fn has_fold(scene: &Scene, simulation: &Simulation) -> bool {
     })
 }
 
-/// Returns the bounds of the errors of the last solution, m, for each probe.
-pub(super) fn errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<Option<f64>> {
-    let probes = solutions.last().map_or(0, Vec::len);
-    let of = |probe: usize| solutions.iter().filter_map(|u| u.get(probe).copied()).collect::<Vec<_>>();
-    (0..probes).map(|probe| remaining_error(&of(probe), has_point)).collect()
+/// Returns the displacement of every probe in the last of these solutions, m, with the bound of its error.
+fn with_errors(solutions: &[Vec<Vector2<f64>>], has_point: bool) -> Vec<(Vector2<f64>, Option<f64>)> {
+    let of = |probe: usize| solutions.iter().map(|u| u[probe]).collect::<Vec<_>>();
+    let last = solutions.last().into_iter().flatten().enumerate();
+    last.map(|(probe, &u)| (u, remaining_error(&of(probe), has_point))).collect()
 }
 
 /// Returns `true` if the errors of all probes with significant displacement are small enough to stop the search.
-fn is_good_enough(solutions: &[Vec<Vector2<f64>>], has_point: bool, extent: Extent) -> bool {
+fn is_good_enough(solved: &[(Vector2<f64>, Option<f64>)], extent: Extent) -> bool {
     /// Displacement relative to the largest of all probes below which a probe is ignored.
     const LITTLE: f64 = 0.01;
-    let Some(last) = solutions.last() else { return false };
-    let largest = last.iter().map(|u| u.norm()).fold(0.0, f64::max);
-    let counts = last.iter().zip(errors(solutions, has_point)).filter(|(u, _)| u.norm() > LITTLE * largest);
-    counts.into_iter().all(|(u, error)| error.is_some_and(|error| error <= GOOD_ENOUGH[extent as usize] * u.norm()))
+    let largest = solved.iter().map(|(u, _)| u.norm()).fold(0.0, f64::max);
+    let mut counts = solved.iter().filter(|(u, _)| u.norm() > LITTLE * largest);
+    counts.all(|(u, error)| error.is_some_and(|error| error <= GOOD_ENOUGH[extent as usize] * u.norm()))
 }
 
 /// Iterates until the status is final or the budget is spent, and adds the unknowns of all iterations to `work`.
-fn solve(simulation: &mut Simulation, extent: Extent, work: &mut f64, observe: Observer<'_>) -> Result<Status> {
+fn solve(simulation: &mut Simulation, extent: Extent, work: &mut f64, observe: Observer<'_>) -> Result<()> {
     let unknowns = simulation.system().dofs();
     let now = sentence!("the reference solution, %{n} unknowns", n = unknowns);
     let fraction = (unknowns as f64 / MAX_UNKNOWNS[extent as usize] as f64).min(1.0);
@@ -260,76 +246,45 @@ fn solve(simulation: &mut Simulation, extent: Extent, work: &mut f64, observe: O
         simulation.step();
         *work += f64::from(simulation.iterations() - before) * unknowns as f64;
     }
-    Ok(simulation.status().clone())
+    Ok(())
 }
 
-/// Sequence of meshes, each with every element of the previous one cut into four.
-pub(super) struct Meshes {
-    /// Mesh before the beam is bent to its arch; the mesh itself if there is no arch.
-    straight: Mesh,
-    /// Arch that the beam is bent to.
-    arch: Option<Beam>,
+/// Returns the coarsest mesh of a scene, of an arch before it is bent, and the points of the scene that have no node: they are
+/// moved to the nearest one, which is the same on every mesh.
+fn coarsest(scene: &mut Scene, near: Option<&Simulation>, extent: Extent) -> Result<(Mesh, Vec<MovedPoint>)> {
+    let meshed = |scene: &Scene| System::mesh_of(scene).map_err(SimulationError::from);
+    let own = match (&scene.beam, near) {
+        (Some(beam), _) => grid(scene, beam).ok_or(StudyError::NoReference)?,
+        (None, Some(near)) => near.mesh().clone(),
+        (None, None) => meshed(scene)?,
+    };
+    let unknowns = scene.mesh.as_ref().map_or(2 * own.nodes().len(), |_| scene.unknowns() as usize);
+    if scene.beam.is_none() && 4 * unknowns > MAX_UNKNOWNS[extent as usize] {
+        return Err(StudyError::TooFine { elements: own.element_count() });
+    }
+    let body = bent_to_arch(scene, &own)?;
+    let moved = moved_points(scene, &body);
+    for (_, place, width) in places(scene) {
+        if let (Place::At(at), None) = (place, width) {
+            *at = body.node(body.nearest_node((*at).into())).into();
+        }
+    }
+    // A mesh given by the caller is kept.
+    let is_final = scene.mesh.is_none() || own.element() == scene.element();
+    Ok((if is_final { own } else { meshed(scene)? }, moved))
 }
 
-impl Meshes {
-    /// Returns the coarsest mesh of a scene. Points of the scene without a node are moved to the nearest one.
-    pub(super) fn of(scene: &mut Scene, near: Option<&Simulation>, extent: Extent) -> Result<(Self, Vec<MovedPoint>)> {
-        if let Some(beam) = scene.beam.clone() {
-            let straight = grid(scene, &beam).ok_or(StudyError::NoReference)?;
-            let meshes = Self { straight, arch: (beam.rise != 0.0).then_some(beam) };
-            let moved = moved_points(scene, &meshes.mesh()?);
-            return Ok((meshes, moved));
-        }
-        let meshed = |scene: &Scene| System::mesh_of(scene).map_err(SimulationError::from);
-        let own = near.map_or_else(|| meshed(scene), |near| Ok(near.system().mesh().clone()))?;
-        // A mesh given by the caller is kept.
-        let element = if scene.mesh.is_some() { scene.element() } else { own.element() };
-        if 4 * unknowns_of(&own, element.entry()) > MAX_UNKNOWNS[extent as usize] {
-            return Err(StudyError::TooFine { elements: own.element_count() });
-        }
-        // The same nodes are used for the scene's points on every mesh, including the scene's own.
-        let moved = moved_points(scene, &own);
-        for (_, place, width) in places(scene) {
-            if let (Place::At(at), None) = (place, width) {
-                *at = own.node(own.nearest_node((*at).into())).into();
-            }
-        }
-        let straight = if own.element() == element { own } else { meshed(scene)? };
-        Ok((Self { straight, arch: None }, moved))
+/// Returns the mesh of a body: that of a beam is bent to its arch.
+fn bent_to_arch(scene: &Scene, straight: &Mesh) -> Result<Mesh> {
+    match scene.beam.as_ref().filter(|beam| beam.rise != 0.0) {
+        None => Ok(straight.clone()),
+        Some(beam) => straight.moved(|x| bent(beam, x.x / beam.length, x.y)).map_err(|_| StudyError::NoReference),
     }
-
-    /// Returns the current mesh.
-    pub(super) fn mesh(&self) -> Result<Mesh> {
-        match &self.arch {
-            None => Ok(self.straight.clone()),
-            Some(beam) => {
-                self.straight.moved(|x| bent(beam, x.x / beam.length, x.y)).map_err(|_| StudyError::NoReference)
-            }
-        }
-    }
-
-    /// Refines the mesh; returns a displacement of the previous mesh interpolated to it.
-    pub(super) fn refine(&mut self, displacement: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-        let carried = self.straight.prolonged(displacement);
-        self.straight = self.straight.refined();
-        carried
-    }
-}
-
-/// Returns the approximate number of unknowns of a mesh converted to another element, by Euler's formula for a mesh
-/// without holes.
-fn unknowns_of(mesh: &Mesh, element: &ElementType) -> usize {
-    let elements = mesh.element_count();
-    let corners = element.cell.corners.len();
-    // Every side belongs to two elements, so there are as many sides as elements times half their corners.
-    let vertices = elements * (corners - 2) / 2;
-    let on_sides = element.degree() - 1;
-    2 * (vertices + on_sides * elements * corners / 2)
 }
 
 /// Returns the places of a scene's supports and forces, each with the key of its table, and with its width if it acts at
 /// the point itself instead of on the nearest node.
-pub(super) fn places(scene: &mut Scene) -> impl Iterator<Item = (String, &mut Place, Option<f64>)> {
+fn places(scene: &mut Scene) -> impl Iterator<Item = (String, &mut Place, Option<f64>)> {
     let supports = scene.supports.iter_mut().enumerate();
     let supports = supports.map(|(i, s)| (format!("support.{i}"), &mut s.place, s.at_point.then_some(s.width)));
     let loads = scene.loads.iter_mut().enumerate().filter_map(|(i, load)| match load {
@@ -359,44 +314,40 @@ pub fn moved_points(scene: &Scene, mesh: &Mesh) -> Vec<MovedPoint> {
 /// thin.
 fn grid(scene: &Scene, beam: &Beam) -> Option<Mesh> {
     let size = [beam.length, beam.height];
-    let mut own = scene.clone();
+    let (mut own, mut wanted) = (scene.clone(), [Vec::new(), Vec::new()]);
     let probes = scene.probes.iter().map(|probe| (&probe.place, 0.0));
-    let points = places(&mut own).map(|(_, place, width)| (&*place, width.unwrap_or(0.0))).chain(probes);
-    // A width has lines at its ends, so that each mesh resolves it.
-    let points = points.flat_map(|(place, width)| match *place {
-        Place::At(at) if width == 0.0 => vec![at],
-        Place::At([x, y]) => vec![[x - 0.5 * width, y], [x + 0.5 * width, y]],
-        Place::Edge(_) => Vec::new(),
-    });
-    let points = points.map(|at| straightened(beam, at.into())).map(|[along, across]| [along * size[0], across]);
-    let (mut columns, mut rows): (Vec<f64>, Vec<f64>) = points.map(|[x, y]| (x, y + 0.5 * size[1])).unzip();
+    for (place, width) in places(&mut own).map(|(_, place, width)| (&*place, width.unwrap_or(0.0))).chain(probes) {
+        let Place::At([x, y]) = *place else { continue };
+        // A width has lines at its ends, so that each mesh resolves it.
+        let ends: &[f64] = if width == 0.0 { &[0.0] } else { &[-0.5, 0.5] };
+        for end in ends {
+            let [along, across] = straightened(beam, Vector2::new(x + end * width, y));
+            wanted[0].push(along * size[0]);
+            wanted[1].push(across + 0.5 * size[1]);
+        }
+    }
     let halvings = 2f64.powi(REFINEMENTS);
     // The finest mesh has 2 (2³ nx + 1) (2³ ny + 1) unknowns.
     let nodes = 0.5 * MAX_UNKNOWNS[Extent::Quick as usize] as f64;
-    let cells = |short: f64, extra: usize| {
-        (((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor() - extra as f64).max(1.0)
-    };
+    let cells = |short: f64| ((nodes / (halvings * short + 1.0) - 1.0) / halvings).floor();
     let square = (nodes / halvings.powi(2) * size[0].min(size[1]) / size[0].max(size[1])).sqrt().round().max(1.0);
     let long = usize::from(size[1] > size[0]);
-    let wanted = if long == 0 { &mut columns } else { &mut rows };
-    if cells(square, 0) * size[1 - long] < 2.0 * size[long] {
-        wanted.extend(LAYERS.into_iter().flat_map(|layer| {
-            let layer = layer * size[1 - long];
-            [layer, size[long] - layer]
-        }));
+    let [length, height] = [size[long], size[1 - long]];
+    if cells(square).max(1.0) * height < 2.0 * length {
+        wanted[long].extend(LAYERS.iter().flat_map(|layer| [layer * height, length - layer * height]));
     }
-    let extra = wanted.len();
     let mut counts = [square; 2];
-    counts[long] = cells(square, extra);
-    let lines = [(columns, 0), (rows, 1)]
-        .map(|(wanted, axis)| lines(size[axis], wanted, counts[axis], NARROWEST * size[1 - axis] / counts[1 - axis]));
-    let cells = [&lines[0], &lines[1]].map(|lines| lines.len() as u32 - 1);
-    let uniform = Mesh::beam(&Beam { cells, rise: 0.0, element: scene.element(), ..beam.clone() }).ok()?;
-    let graded = |x: Vector2<f64>| {
-        let [x, y] = [on_lines(&lines[0], x.x / size[0]), on_lines(&lines[1], x.y / size[1] + 0.5)];
-        Vector2::new(x, y - 0.5 * size[1])
-    };
-    uniform.moved(graded).ok()
+    counts[long] = (cells(square) - wanted[long].len() as f64).max(1.0);
+    let [columns, rows] = [0, 1].map(|axis| {
+        let narrowest = NARROWEST * size[1 - axis] / counts[1 - axis];
+        lines(size[axis], std::mem::take(&mut wanted[axis]), counts[axis], narrowest)
+    });
+    let cells = [&columns, &rows].map(|lines| lines.len() as u32 - 1);
+    let [nx, ny] = cells.map(f64::from);
+    // A mesh with cells of 1 m × 1 m has its nodes at the numbers of the lines.
+    let numbers = Mesh::beam(&Beam { length: nx, height: ny, cells, rise: 0.0, ..beam.clone() }).ok()?;
+    let line = |lines: &[f64], number: f64| lines[number.round() as usize];
+    numbers.moved(|x| Vector2::new(line(&columns, x.x), line(&rows, x.y + 0.5 * ny) - 0.5 * size[1])).ok()
 }
 
 /// Returns the boundaries of about `cells` equal intervals from 0 to `end`, with one at each value of `wanted` that is
@@ -406,24 +357,11 @@ fn lines(end: f64, mut wanted: Vec<f64>, cells: f64, narrowest: f64) -> Vec<f64>
     wanted.sort_by(f64::total_cmp);
     wanted.dedup_by(|b, a| *b - *a < narrowest);
     let mut lines = vec![0.0];
-    let mut from = 0.0;
     for to in wanted.into_iter().chain([end]) {
+        let from = lines[lines.len() - 1];
         let count = (cells * (to - from) / end).round().max(1.0);
         lines.extend((1..count as u32).map(|i| from + (to - from) * f64::from(i) / count));
         lines.push(to);
-        from = to;
     }
     lines
-}
-
-/// Maps a fraction, 0 to 1, of equal cells to the position on these lines.
-fn on_lines(lines: &[f64], part: f64) -> f64 {
-    // Nodes are at corners of cells and half way between them, so that lines are met without rounding errors.
-    let halves = (2.0 * part * (lines.len() - 1) as f64).round() as usize;
-    let (line, odd) = (halves / 2, halves % 2 == 1);
-    match lines.get(line..) {
-        Some([here, next, ..]) if odd => 0.5 * (here + next),
-        Some([here, ..]) => *here,
-        _ => lines.last().copied().unwrap_or(part),
-    }
 }

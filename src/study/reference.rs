@@ -8,8 +8,9 @@ use super::prelude::*;
 use crate::exact_beam::ExactBeam;
 use crate::format::engineering_pair;
 use crate::mesh::Segment;
-use crate::scene::Probe;
+use crate::scene::{Beam, Probe};
 use crate::simulation::{Equilibrium, ProbeResult};
+use crate::state::largest;
 
 /// Origin of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -115,12 +116,8 @@ pub struct Reference {
     /// Distance of the exact beam from the fine solution used instead, percent; `None` if the beam is used, or there is
     /// none.
     pub beam_off_by_percent: Option<f64>,
-    /// Closed outlines of the deformed body, m; empty if no bound of the first probe's error is known.
-    pub outline: Vec<Vec<Vector2<f64>>>,
-    /// The same lines at rest, point by point, m.
-    pub(crate) rest_outline: Vec<Vec<Vector2<f64>>>,
-    /// Displacement of every point, which the outlines are of.
-    displacements: DisplacementMap,
+    /// Body under the load; empty if no bound of the first probe's error is known.
+    body: DeformedBody,
     /// Displacement of the first probe by linear theory on a fine mesh, m: its distance from the reference is the error
     /// of linear theory.
     pub linear: Option<Vector2<f64>>,
@@ -186,53 +183,39 @@ const MAX_CONFIRMED_ERROR: f64 = 1.0;
 
 impl Reference {
     /// Returns the reference of the solution on the finest mesh of a search: the displacements of the probes, m, with the
-    /// bounds of their errors, and linear theory on the same mesh. For probes at its tip it is the exact beam if the
-    /// solution confirms it.
-    pub(super) fn of_finest(
-        scene: &Scene,
-        finest: &Simulation,
-        solved: &[(Vector2<f64>, Option<f64>)],
-        linear: &Simulation,
-        moved: Vec<MovedPoint>,
-        folds: bool,
-    ) -> Self {
+    /// bounds of their errors. For probes at its tip it is the exact beam if the solution confirms it.
+    pub(super) fn of_finest(scene: &Scene, finest: &Simulation, solved: &[(Vector2<f64>, Option<f64>)]) -> Self {
         const STRAIGHT: f64 = 1e-9;
         let source = if scene.beam.is_some() { ReferenceSource::FineMesh } else { ReferenceSource::RefinedMesh };
-        let mesh = finest.system().mesh();
+        let (mesh, displacement) = (finest.system().mesh(), finest.displacement());
         let is_straight = |side: &Segment| {
             let [a, b] = side.ends().map(|n| mesh.node(n));
             side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
         };
-        let [rest_outline, outline] = outlines(finest);
-        let lines = outline.iter().flatten().zip(rest_outline.iter().flatten());
-        let largest = lines.map(|(now, rest)| (now - rest).norm()).fold(0.0, f64::max);
+        let missing = |&(u, error): &_| missing(scene, u, error, largest(displacement));
         let mut reference = Self {
             probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
-            missing: solved.first().map(|&(u, error)| missing(scene, u, error, largest)).unwrap_or_default(),
-            linear: first_probe(linear).ok(),
-            moved,
-            folds,
+            missing: solved.first().map(missing).unwrap_or_default(),
             is_polygon: scene.beam.is_none() && mesh.outline().iter().all(is_straight),
             unknowns: finest.system().dofs(),
             ..Self::default()
         };
-        if reference.first().is_some() {
-            (reference.rest_outline, reference.outline) = (rest_outline, outline);
-            reference.displacements = DisplacementMap::of(finest);
-        }
-        let Some((beam, tip)) = exact(scene) else { return reference };
-        for (i, (_, &(u, own))) in scene.probes.iter().zip(solved).enumerate().filter(|(_, (p, _))| is_at_tip(p)) {
+        let exact = exact(scene);
+        for (i, &(u, own)) in solved.iter().enumerate().filter(|(i, _)| is_at_tip(&scene.probes[*i])) {
+            let Some((_, tip)) = exact else { break };
             let off = (u - tip).norm();
             let within = |own: f64| off <= MARGIN * own && off + own <= 0.01 * MAX_CONFIRMED_ERROR * tip.norm();
             if off <= 0.01 * CONFIRMED * tip.norm() || own.is_some_and(within) {
                 // Without a bound the error of the fine solution is taken as its distance from the beam.
                 reference.probes[i] = probe(tip, off + own.unwrap_or(off), ReferenceSource::ExactBeam);
-                if i == 0 && reference.first().is_some() {
-                    reference.draw(scene, &beam);
-                }
             } else if i == 0 {
                 reference.beam_off_by_percent = error_percent(tip, u);
             }
+        }
+        if let Some(first) = reference.first() {
+            let beam = exact.filter(|_| first.source == ReferenceSource::ExactBeam);
+            let body = beam.and_then(|(beam, _)| DeformedBody::of_beam(scene.beam.as_ref()?, &beam));
+            reference.body = body.unwrap_or_else(|| DeformedBody::new(mesh, displacement.to_vec()));
         }
         reference
     }
@@ -248,24 +231,51 @@ impl Reference {
             return None;
         }
         let probes = vec![probe(tip, ratio * tip.norm(), ReferenceSource::ExactBeam); scene.probes.len()];
-        let mut reference = Self { probes, ..Self::default() };
-        reference.draw(scene, &beam);
-        Some(reference)
+        Some(Self { probes, body: DeformedBody::of_beam(rectangle, &beam).unwrap_or_default(), ..Self::default() })
     }
 
-    /// Takes outline and displacements from the exact beam of a scene, if it has an outline.
-    fn draw(&mut self, scene: &Scene, beam: &ExactBeam) {
-        if let Some([rest, line]) = scene.beam.as_ref().and_then(|rectangle| beam.outline(rectangle.height)) {
-            self.displacements = DisplacementMap::of_beam([&rest, &line]);
-            (self.rest_outline, self.outline) = (vec![rest], vec![line]);
-        }
+    /// Returns the closed outlines of the body with a multiple of its displacement, m; none if no bound of the first probe's
+    /// error is known.
+    #[must_use]
+    pub fn outline(&self, magnification: f64) -> Vec<Vec<Vector2<f64>>> {
+        let DeformedBody { rest, displacements, outline, .. } = &self.body;
+        let place = |&n: &u32| rest[n as usize] + displacements[n as usize] * magnification;
+        outline.iter().map(|line| line.iter().map(place).collect()).collect()
     }
 
-    /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and
-    /// everywhere if there is no outline.
+    /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and everywhere if
+    /// there is no outline. Points that are outside by a little, as on a curved side, have the displacement of the nearest
+    /// triangle, continued.
     #[must_use]
     pub fn displacements_at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
-        self.displacements.at(points)
+        /// Largest distance outside a triangle, relative to its height.
+        const OUTSIDE: f64 = 0.5;
+        let DeformedBody { rest, displacements, triangles, .. } = &self.body;
+        // A triangle is compared with the points around it, which are found by x.
+        let mut by_x: Vec<(usize, &Vector2<f64>)> = points.iter().enumerate().collect();
+        by_x.sort_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
+        let mut found = vec![(-OUTSIDE, None); points.len()];
+        for triangle in triangles {
+            let corner = |corner: u32| (rest[corner as usize], displacements[corner as usize]);
+            let [(a, u), (b, v), (c, w)] = triangle.map(corner);
+            // Barycentric coordinates; a triangle without area has none.
+            let Some(inverse) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { continue };
+            // Points at the largest distance are as far away as the triangle is large.
+            let [low, high] = [a.inf(&b).inf(&c), a.sup(&b).sup(&c)];
+            let [low, high] = [low * 2.0 - high, high * 2.0 - low];
+            let first = by_x.partition_point(|(_, at)| at.x < low.x);
+            let around = by_x[first..].iter().take_while(|(_, at)| at.x <= high.x);
+            for &(point, at) in around.filter(|(_, at)| (low.y..=high.y).contains(&at.y)) {
+                let part = inverse * (at - a);
+                let weights = [1.0 - part.x - part.y, part.x, part.y];
+                let depth = weights.into_iter().fold(f64::INFINITY, f64::min);
+                if depth.total_cmp(&found[point].0).is_ge() {
+                    found[point] =
+                        (depth, Some([u, v, w].into_iter().zip(weights).map(|(u, weight)| u * weight).sum()));
+                }
+            }
+        }
+        found.into_iter().map(|(_, u)| u).collect()
     }
 
     /// Returns the references of the probes, in the scene's order; `None` if a probe does not move, or no bound of its
@@ -349,91 +359,42 @@ pub(super) fn first_probe(simulation: &Simulation) -> Result<Vector2<f64>> {
     Ok(probe.mean(simulation.displacement()))
 }
 
-/// Returns the closed outlines of a body at rest and in its state, m, node by node.
-fn outlines(simulation: &Simulation) -> [Vec<Vec<Vector2<f64>>>; 2] {
-    let (mesh, u) = (simulation.system().mesh(), simulation.displacement());
-    let lines = Mesh::closed_lines(mesh.outline().into_iter().map(|side| (side.ends(), side)));
-    let placed = |place: &dyn Fn(&u32) -> Vector2<f64>| {
-        lines.iter().map(|line| line.iter().flat_map(Segment::nodes).map(place).collect()).collect()
-    };
-    [placed(&|&n| mesh.node(n)), placed(&|&n| mesh.node(n) + u[n as usize])]
-}
-
-/// Displacement that is linear over triangles.
+/// Body whose displacement is linear over triangles.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-struct DisplacementMap {
-    /// Rest positions of the corners, m.
+struct DeformedBody {
+    /// Rest positions of the nodes, m.
     rest: Vec<Vector2<f64>>,
-    /// Displacements of the corners, m.
+    /// Displacements of the nodes, m.
     displacements: Vec<Vector2<f64>>,
-    /// Corners of every triangle.
+    /// Nodes of every triangle.
     triangles: Vec<[u32; 3]>,
+    /// Nodes of the closed lines around the body.
+    outline: Vec<Vec<u32>>,
 }
 
-impl DisplacementMap {
-    /// Returns the displacement of a simulation, from node to node.
-    fn of(simulation: &Simulation) -> Self {
-        let mesh = simulation.system().mesh();
-        let triangles = mesh.elements().flat_map(|nodes| triangles(mesh, nodes)).collect();
-        Self { rest: mesh.nodes().to_vec(), displacements: simulation.displacement().to_vec(), triangles }
-    }
-
-    /// Returns the displacement of an exact beam, whose sections stay plane, from its outlines at rest and now, m, as of
-    /// [`ExactBeam::outline`](crate::exact_beam::ExactBeam::outline).
-    fn of_beam([rest, moved]: [&[Vector2<f64>]; 2]) -> Self {
-        let displacements = rest.iter().zip(moved).map(|(x, now)| now - x).collect();
-        // The outline runs along the lower side, back along the upper side, and ends where it begins.
-        let stations = (rest.len().saturating_sub(1) / 2) as u32;
-        let quads = (1..stations).map(|i| [i - 1, i, 2 * stations - 1 - i, 2 * stations - i]);
-        let triangles = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        Self { rest: rest.to_vec(), displacements, triangles }
-    }
-
-    /// Returns the displacement at every point, m; `None` outside the body. Points that are outside by a little, as on a
-    /// curved side, have the displacement of the nearest triangle, continued.
-    fn at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
-        /// Largest distance outside a triangle, relative to its height.
-        const OUTSIDE: f64 = 0.5;
-        // A triangle is compared with the points around it, which are found by x.
-        let mut by_x: Vec<(usize, &Vector2<f64>)> = points.iter().enumerate().collect();
-        by_x.sort_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
-        let mut found = vec![(-OUTSIDE, None); points.len()];
-        for triangle in &self.triangles {
-            let corner = |corner: u32| (self.rest[corner as usize], self.displacements[corner as usize]);
-            let [(a, u), (b, v), (c, w)] = triangle.map(corner);
-            // Barycentric coordinates; a triangle without area has none.
-            let Some(inverse) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { continue };
-            // Points at the largest distance are as far away as the triangle is large.
-            let [low, high] = [a.inf(&b).inf(&c), a.sup(&b).sup(&c)];
-            let [low, high] = [low * 2.0 - high, high * 2.0 - low];
-            let first = by_x.partition_point(|(_, at)| at.x < low.x);
-            let around = by_x[first..].iter().take_while(|(_, at)| at.x <= high.x);
-            for &(point, at) in around.filter(|(_, at)| (low.y..=high.y).contains(&at.y)) {
-                let part = inverse * (at - a);
-                let weights = [1.0 - part.x - part.y, part.x, part.y];
-                let depth = weights.into_iter().fold(f64::INFINITY, f64::min);
-                if depth.total_cmp(&found[point].0).is_ge() {
-                    found[point] =
-                        (depth, Some([u, v, w].into_iter().zip(weights).map(|(u, weight)| u * weight).sum()));
-                }
-            }
+impl DeformedBody {
+    /// Returns the body of a mesh with these displacements of its nodes, m.
+    fn new(mesh: &Mesh, displacements: Vec<Vector2<f64>>) -> Self {
+        let lattice = (mesh.entry().cell.lattice)(mesh.entry().degree() as u32);
+        let own: Vec<_> = lattice.points.iter().filter_map(|&point| mesh.entry().node_at(point)).collect();
+        let triangles = mesh.elements().flat_map(|nodes| {
+            lattice.triangles.iter().map(|corners| corners.map(|corner| nodes[own[corner as usize]]))
+        });
+        let sides = mesh.outline().into_iter().map(|side| (side.ends(), side.nodes().to_vec()));
+        Self {
+            rest: mesh.nodes().to_vec(),
+            displacements,
+            triangles: triangles.collect(),
+            outline: Mesh::closed_lines(sides).into_iter().map(|line| line.concat()).collect(),
         }
-        found.into_iter().map(|(_, u)| u).collect()
     }
-}
 
-/// Divides an element into triangles between its nodes.
-fn triangles(mesh: &Mesh, nodes: &[u32]) -> Vec<[u32; 3]> {
-    let around = mesh.sides(nodes).flat_map(|side| {
-        // The last node of a side is the first of the next.
-        let (_, own) = side.nodes().split_last().unwrap_or((&0, &[]));
-        own.to_vec()
-    });
-    match around.collect::<Vec<u32>>()[..] {
-        [a, b, c] => vec![[a, b, c]],
-        [a, b, c, d] => vec![[a, b, c], [a, c, d]],
-        [a, ab, b, bc, c, ca] => vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
-        _ => Vec::new(),
+    /// Returns the body of an exact beam, whose sections stay plane; `None` if its displacement is not known.
+    fn of_beam(rectangle: &Beam, beam: &ExactBeam) -> Option<Self> {
+        let sections = beam.section_displacements(rectangle.height)?;
+        let cells = [sections.len() as u32 - 1, 1];
+        let mesh = Mesh::beam(&Beam { cells, element: ElementKind::Q4, ..rectangle.clone() }).ok()?;
+        Some(Self::new(&mesh, sections.concat()))
     }
 }
 
@@ -441,10 +402,10 @@ fn triangles(mesh: &Mesh, nodes: &[u32]) -> Vec<[u32; 3]> {
 mod tests {
     use super::*;
 
-    /// The map has the displacement of every node, also on a curved outline, of the nodes of another mesh of the same
-    /// body, and none far outside; that of an exact beam has the displacement of its tip.
+    /// A body has the displacement of every node, also on a curved outline, of the nodes of another mesh of the same body,
+    /// and none far outside; that of an exact beam has the displacement of its tip.
     #[test]
-    fn the_map_has_the_displacement_of_every_point() {
+    fn a_body_has_the_displacement_of_every_point() {
         let scene = |element, cells: [u32; 2]| {
             let scene = Scene::beam(10.0, 1.0).with_cells(cells[0], cells[1]).with_element(element).clamp("left");
             let mut scene = scene.force("right", [0.0, -3e3]).probe("tip", "right");
@@ -458,19 +419,20 @@ mod tests {
                 simulation
             };
             let (fine, coarse) = (solved(&scene(element, [40, 4])), solved(&scene(element, [7, 1])));
-            let map = DisplacementMap::of(&fine);
-            let largest = fine.displacement().iter().map(|u| u.norm()).fold(0.0, f64::max);
-            for (own, u) in map.at(fine.mesh().nodes()).into_iter().zip(fine.displacement()) {
-                assert!((own.unwrap() - u).norm() < 1e-9 * largest, "{element:?}");
+            let reference = Reference {
+                body: DeformedBody::new(fine.mesh(), fine.displacement().to_vec()),
+                ..Reference::default()
+            };
+            for (own, u) in reference.displacements_at(fine.mesh().nodes()).into_iter().zip(fine.displacement()) {
+                assert!((own.unwrap() - u).norm() < 1e-9 * largest(fine.displacement()), "{element:?}");
             }
-            assert!(map.at(coarse.mesh().nodes()).iter().all(Option::is_some), "{element:?}");
-            assert_eq!(map.at(&[Vector2::new(20.0, 5.0), Vector2::repeat(f64::NAN)]), [None, None]);
+            assert!(reference.displacements_at(coarse.mesh().nodes()).iter().all(Option::is_some), "{element:?}");
+            assert_eq!(reference.displacements_at(&[Vector2::new(20.0, 5.0), Vector2::repeat(f64::NAN)]), [None, None]);
         }
         let straight = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -3e3]).probe("tip", "right");
         let beam = ExactBeam::of(&straight).unwrap();
-        let [rest, moved] = beam.outline(1.0).unwrap();
-        let map = DisplacementMap::of_beam([&rest, &moved]);
-        let tip = map.at(&[Vector2::new(10.0, 0.0)])[0].unwrap();
+        let body = DeformedBody::of_beam(straight.beam.as_ref().unwrap(), &beam).unwrap();
+        let tip = Reference { body, ..Reference::default() }.displacements_at(&[Vector2::new(10.0, 0.0)])[0].unwrap();
         let exact = beam.tip_displacement().unwrap();
         assert!((tip - exact).norm() < 1e-6 * exact.norm(), "{tip} {exact}");
     }

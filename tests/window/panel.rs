@@ -303,7 +303,7 @@ fn the_window_says_which_force_is_moved_and_which_error_is_unknown() {
     let scene = Scene::beam(5.0, 1.0).with_cells(10, 2).with_element(ElementKind::Q4).clamp("left");
     let scene = scene.force(place, [60e3, 0.0]).probe("there", place).with_method(MethodKind::Newton);
     let reference = Reference::of(&scene).unwrap();
-    assert_eq!((reference.first(), reference.outline.len()), (None, 0));
+    assert_eq!((reference.first(), reference.outline(1.0).len()), (None, 0));
     let mut ui = window_of("article", scene);
     settle(&mut ui);
     ui.expect(&["no reference · nodal strain 21 %"]);

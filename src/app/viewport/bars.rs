@@ -35,17 +35,6 @@ pub(crate) fn color_bar(painter: &Painter, bar: Rect, map: ColorMap) {
     painter.add(mesh);
 }
 
-/// Returns the outline of a reference solution that is drawn with a multiple of its displacement, m.
-pub(crate) fn magnified_outline(reference: Option<&Reference>, factor: f64) -> Cow<'_, [Vec<Vector2<f64>>]> {
-    let Some(reference) = reference else { return Cow::default() };
-    if factor == 1.0 {
-        return Cow::Borrowed(&reference.outline);
-    }
-    let point = |(rest, place): (&Vector2<f64>, &Vector2<f64>)| rest + (place - rest) * factor;
-    let lines = reference.rest_outline.iter().zip(&reference.outline);
-    lines.map(|(rest, line)| rest.iter().zip(line).map(point).collect()).collect()
-}
-
 /// Returns the label of a body that is drawn with a multiple of its displacement.
 pub(crate) fn magnified(factor: f64) -> String {
     fill!("displacement × %{factor}", factor = number(three_digits(factor)))

@@ -196,9 +196,9 @@ impl MainView {
     }
 
     /// Returns the drawn outline of the reference solution under the load that was asked for, m.
-    fn exact<'a>(&self, content: &Content<'a>) -> Cow<'a, [Vec<Vector2<f64>>]> {
+    fn exact(&self, content: &Content<'_>) -> Vec<Vec<Vector2<f64>>> {
         let reference = content.reference().filter(|_| content.options.lines.exact);
-        bars::magnified_outline(reference, self.view.body.magnification)
+        reference.map_or_else(Vec::new, |reference| reference.outline(self.view.body.magnification))
     }
 
     /// Moves the camera by the pointer, and pins or unpins the material point that was clicked.

@@ -321,7 +321,7 @@ impl Compare {
             (pane.view.body.range, pane.view.rect) = (range, *body);
         }
         let reference = input.reference.filter(|_| input.view.lines.exact);
-        let exact = bars::magnified_outline(reference, self.magnification);
+        let exact = reference.map_or_else(Vec::new, |reference| reference.outline(self.magnification));
         self.fit_camera(ui, input, &exact);
         if self.in_motion {
             self.is_timing = !ui.input(|i| i.pointer.any_down()) && self.request_times(ui.ctx());

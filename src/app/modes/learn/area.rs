@@ -15,13 +15,13 @@ pub(super) fn show(ui: &mut Ui, session: &Session, learn: &mut Learn, actions: &
     for (body, method) in [(session.simulation(), method)].into_iter().chain(linear) {
         row(ui, &palette, method.id(), Some(body.area_change()), palette.ink(Ink::Solution(method.entry().colors)));
     }
-    let outline =
-        session.known_reference().filter(|_| session.simulation().is_at_rest()).map(|reference| &reference.outline);
+    let reference = session.known_reference().filter(|_| session.simulation().is_at_rest());
     // The area inside a closed line, m²: positive for a counter-clockwise one.
     let enclosed = |line: &Vec<Vector2<f64>>| {
         0.5 * line.iter().zip(line.iter().cycle().skip(1)).map(|(a, b)| a.perp(b)).sum::<f64>()
     };
-    let exact = outline.filter(|lines| !lines.is_empty()).map(|lines| {
+    let outline = reference.map(|reference| reference.outline(1.0)).filter(|lines| !lines.is_empty());
+    let exact = outline.map(|lines| {
         let rest: f64 = session.simulation().system().nodal_areas().iter().sum();
         lines.iter().map(enclosed).sum::<f64>().abs() / rest - 1.0
     });
