@@ -11,9 +11,8 @@ use crate::method::{
     support_stiffness,
 };
 use crate::scene::Support;
-use crate::simulation::{Equilibrium, SupportReaction, support_reactions};
+use crate::simulation::{SupportReaction, support_reactions};
 use crate::state::{State, largest, largest_distance};
-use crate::stress::LAW_HOLDS;
 
 /// Equilibrium on the path.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -65,22 +64,12 @@ impl PathSummary {
         let events = [self.jump.map(|jump| jump.factor), self.buckling.map(|buckling| buckling.factor)];
         events.into_iter().flatten().reduce(f64::min)
     }
-
-    /// Returns the critical load factor next to the load of a simulation's scene: `None` if the path jumps or buckles below,
-    /// or cannot be followed to it.
-    fn critical_load(&self, simulation: &Simulation, observe: Observer<'_>) -> Option<f64> {
-        if self.first_event().is_some() {
-            return None;
-        }
-        let factor = NEXT * LoadPath::end_of(simulation, NEXT, observe)?.summary.first_event()?;
-        (factor > 1.0 || simulation.is_linear()).then_some(factor)
-    }
 }
 
 /// Critical points of the load path from rest, and the equilibrium at its end.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PathFromRest {
-    pub(super) summary: PathSummary,
+    summary: PathSummary,
     /// Displacement of every node at the end, m; `None` under linear theory, whose result is no equilibrium.
     end: Option<Vec<Vector2<f64>>>,
 }
@@ -133,14 +122,6 @@ const NEXT: f64 = 1.5;
 /// as the same equilibrium.
 const SAME: f64 = 0.02;
 
-/// Returns `true` if the result of full steps from rest counts as the end of the path, and its strains are so large that the
-/// material may have jumped on the path.
-fn is_taken_for_path(simulation: &Simulation) -> bool {
-    let is_direct = simulation.equilibrium().is_some_and(|search| search.load_steps() == 1);
-    let strain = || Deformation::of(simulation.problem(), simulation.state(), &simulation.nodal_stress()).max_strain;
-    is_direct && strain() > LAW_HOLDS
-}
-
 impl LoadPath {
     /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
     pub fn of(scene: &Scene) -> Option<Self> {
@@ -151,105 +132,42 @@ impl LoadPath {
     pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let can_be_followed = scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear;
         let simulation = can_be_followed.then(|| Simulation::new(scene).ok())??;
-        Some(Tracer::new(&simulation)?.trace(1.0, observe)?.0)
+        Some(Tracer::new(&simulation)?.trace(1.0, true, observe)?.path)
     }
 
     /// Compares a result with the end of the load path from rest, and summarizes the path; `None` for a motion or a
-    /// result that has not converged, if the model is too large, or if the path cannot be followed.
+    /// result that has not converged, or if the path cannot be followed. Of a large model only the critical points are known
+    /// that its own search has met.
     pub fn to_result(simulation: &Simulation, observe: Observer<'_>) -> Option<PathSummary> {
-        let search = simulation.equilibrium()?;
-        if !simulation.status().is_success() {
-            return None;
+        let search = simulation.equilibrium().filter(|_| simulation.status().is_success())?;
+        if let Some(path) = Self::from_rest(simulation, observe) {
+            return Some(path.to(simulation.displacement()));
         }
-        let is_small = simulation.system().dofs() <= MAX_UNKNOWNS;
-        let moves = simulation.problem().supports().move_the_body();
-        let events = search.path_events().filter(|_| !(simulation.is_linear() || is_small && moves));
-        let Some(events) = events else {
-            return Some(Self::from_rest(simulation, observe)?.to(simulation.displacement()));
-        };
-        let mut summary = match is_small && is_taken_for_path(simulation) {
-            true => Self::followed(simulation, false, observe)?.to(simulation.displacement()),
-            false => PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY),
-        };
-        if is_small && summary.elsewhere.is_none() {
-            summary.critical = summary.critical_load(simulation, observe);
-        }
-        Some(summary)
+        let events = search.path_events().filter(|_| !simulation.is_linear())?;
+        Some(PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY))
     }
 
-    /// Follows the load path of a simulation's scene to its end; `None` if the path cannot be followed, or is cancelled, or
-    /// the model is too large.
-    fn from_rest(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
-        if simulation.system().dofs() > MAX_UNKNOWNS {
-            return None;
-        }
-        if simulation.is_linear() {
-            let summary = PathSummary::of(simulation.problem(), None, &[], 1.0);
-            let critical = summary.critical_load(simulation, observe);
-            return Some(PathFromRest { summary: PathSummary { critical, ..summary }, end: None });
-        }
-        if simulation.problem().supports().move_the_body() {
-            // The work of the supports is that to the full load, and the path goes on to the critical load next to it.
-            let (path, end) = Tracer::new(simulation)?.trace(NEXT, observe)?;
-            let within = |most: f64| PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most);
-            let summary = within(1.0);
-            let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
-            let summary = PathSummary { critical, supports_work: Some(path.supports_work), ..summary };
-            return Some(PathFromRest { summary, end: Some(end?) });
-        }
-        let mut path = Self::end_of(simulation, 1.0, observe)?;
-        path.summary.critical = path.summary.critical_load(simulation, observe);
-        Some(path)
+    /// Follows the load path of a simulation's scene, through the full load to a critical load next to it; `None` for a motion,
+    /// if the full load is not reached, or the search is cancelled, or the model is too large.
+    pub(crate) fn from_rest(simulation: &Simulation, observe: Observer<'_>) -> Option<PathFromRest> {
+        simulation.equilibrium().filter(|_| simulation.system().dofs() <= MAX_UNKNOWNS)?;
+        let is_linear = simulation.is_linear();
+        let has_work = simulation.problem().supports().move_the_body() && !is_linear;
+        let Tracer { path, end, .. } = Tracer::new(simulation)?.trace(NEXT, has_work, observe)?;
+        let is_cancelled = matches!(path.end, Some((_, PathEndReason::Interrupted)));
+        let end = end.filter(|_| !is_cancelled)?;
+        let within = |most: f64| PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most);
+        let summary = within(if is_linear { 0.0 } else { 1.0 });
+        let critical = within(NEXT).first_event().filter(|_| summary.first_event().is_none());
+        let summary = PathSummary { critical, supports_work: has_work.then_some(path.supports_work), ..summary };
+        Some(PathFromRest { summary, end: (!is_linear).then_some(end) })
     }
 
-    /// Follows the load path of a simulation's scene on its mesh, to `part` of the load; returns its critical points and
-    /// the displacement at its end, m; `None` if the path cannot be followed, or is cancelled.
-    fn end_of(simulation: &Simulation, part: f64, observe: Observer<'_>) -> Option<PathFromRest> {
-        let mut scene = simulation.scene().clone();
-        scene.scale_loads(part);
-        scene.solver.method = MethodKind::Newton;
-        scene.solver.accept_after = 0;
-        scene.solver.max_iterations = MAX_SOLVES;
-        let mut follower = Simulation::with_system(&scene, simulation.system().clone()).ok()?;
-        let now = sentence!("following the load path");
-        let reached = |follower: &Simulation| follower.equilibrium().map_or(0.0, Equilibrium::load_factor);
-        let flow =
-            follower.solve_watched(&mut |follower| observe(Progress { fraction: reached(follower), now: Some(&now) }));
-        if flow.is_break() || *follower.status() != Status::Converged {
-            return None;
-        }
-        if is_taken_for_path(&follower) {
-            return Self::followed(&follower, false, observe);
-        }
-        let events = follower.equilibrium()?.path_events()?;
-        let summary = PathSummary::of(follower.problem(), events.jump, &events.bifurcations, f64::INFINITY);
-        Some(PathFromRest { summary, end: Some(follower.displacement().to_vec()) })
-    }
-
-    /// Follows the path of a simulation's scene by its follower alone, to the full load or, with `to_jump`, to the first jump or
-    /// the end of the path; `None` if the full load is not reached without `to_jump`, or the search is cancelled.
-    pub(super) fn followed(simulation: &Simulation, to_jump: bool, observe: Observer<'_>) -> Option<PathFromRest> {
-        let mut tracer = Tracer::new(simulation)?;
-        let mut follower = PathFollower::start(&mut tracer.equations(), 1.0)?;
-        let now = sentence!("following the load path");
-        let mut progress = PathProgress::Continue;
-        while matches!(progress, PathProgress::Continue) && !(to_jump && follower.events.jump.is_some()) {
-            observe(Progress { fraction: follower.last.factor, now: Some(&now) }).is_continue().then_some(())?;
-            progress = follower.advance(&mut tracer.equations(), MAX_SOLVES);
-            follower.parts.clear();
-        }
-        let events = follower.take_events();
-        let is_at_end = matches!(progress, PathProgress::Reached);
-        let end = is_at_end.then(|| follower.last.state.displacement.to_vec());
-        let summary = PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY);
-        (to_jump || is_at_end).then_some(PathFromRest { summary, end })
-    }
-
-    /// Follows the load path of a scene to its end; `None` for a motion, if the path cannot be followed, or is cancelled,
-    /// or the model is too large.
-    pub fn end_of_scene(scene: &Scene, observe: Observer<'_>) -> Option<PathFromRest> {
-        let simulation = (scene.analysis == Analysis::Static).then(|| Simulation::new(scene).ok())??;
-        Self::from_rest(&simulation, observe)
+    /// Returns the load factor at which the load path of a simulation's scene first jumps or buckles, if it does so up to the
+    /// load factor `most`.
+    pub(super) fn first_event(simulation: &Simulation, most: f64, observe: Observer<'_>) -> Option<f64> {
+        let path = Tracer::new(simulation)?.trace(most, false, observe)?.path;
+        PathSummary::of(simulation.problem(), path.jump, &path.bifurcations, most).first_event()
     }
 
     /// Returns `true` if the path reaches the full load without a jump or a bifurcation.
@@ -318,12 +236,13 @@ impl Tracer {
         })
     }
 
-    /// Follows the path to the load factor `to`, and records its rows and critical points up to the full load. Returns the
-    /// path and the displacement under the full load, m, if it is reached.
-    fn trace(mut self, to: f64, observe: Observer<'_>) -> Option<(LoadPath, Option<Vec<Vector2<f64>>>)> {
+    /// Follows the path to the load factor `to`, beyond the full load only until it jumps or buckles, and records its states up
+    /// to the full load: all rows and critical points if the record `is_complete`. `None` if the tangent at rest is singular.
+    fn trace(mut self, to: f64, is_complete: bool, observe: Observer<'_>) -> Option<Self> {
         let now = sentence!("following the load path");
+        self.row = if is_complete { 1 } else { ROWS };
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
-        follower.path.locates_all = true;
+        follower.path.locates_all = is_complete;
         self.visit(&follower, &follower.last);
         self.mark();
         let end = loop {
@@ -345,7 +264,9 @@ impl Tracer {
                     }
                 }
             }
+            let has_event = follower.events.jump.is_some() || !follower.events.bifurcations.is_empty();
             match progress {
+                PathProgress::Continue if self.end.is_some() && has_event => break None,
                 PathProgress::Continue => {}
                 PathProgress::Reached => break None,
                 PathProgress::Ended(reason) => break Some(reason),
@@ -355,7 +276,7 @@ impl Tracer {
         self.mark();
         (self.path.jump, self.path.bifurcations) = (events.jump, events.bifurcations);
         self.path.end = end.map(|reason| (factor, reason));
-        Some((self.path, self.end))
+        Some(self)
     }
 
     fn equations(&mut self) -> StaticEquations<'_> {

@@ -38,7 +38,9 @@ facts! {
     /// Load–displacement curve.
     CurveFact = "curve": Curve, |scene, observe, _| curve(scene, observe);
     /// End of the load path from rest, and the jumps on it.
-    PathFact = "path": PathFromRest, |scene, observe, _| Ok(LoadPath::end_of_scene(scene, observe));
+    PathFact = "path": PathFromRest, |scene, observe, _| {
+        Ok(Simulation::new(scene).ok().and_then(|simulation| LoadPath::from_rest(&simulation, observe)))
+    };
     /// Limits of every method and element.
     LimitsFact by without_methods = "limits": MethodLimits, |scene, observe, partial| {
         found(MethodLimits::of(scene, observe, &|limits| partial(limits.clone())))

@@ -691,9 +691,8 @@ fn critical(scene: &Scene, system: &Arc<System>, observe: Observer<'_>) -> Optio
     if system.dofs() > MAX_UNKNOWNS {
         return None;
     }
-    let scene = at(scene, RANGE[1]).with_method(MethodKind::Newton);
-    let simulation = Simulation::with_system(&scene, system.clone()).ok()?;
-    Some(RANGE[1] * LoadPath::followed(&simulation, true, observe)?.summary.first_event()?)
+    let simulation = Simulation::with_system(scene, system.clone()).ok()?;
+    LoadPath::first_event(&simulation, RANGE[1], observe)
 }
 
 /// Returns the scene under a part of its loads and prescribed displacements.
