@@ -11,7 +11,7 @@ use super::progress::watched;
 use super::{CliError, about, json, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
-use crate::scene::{self, Scene};
+use crate::scene::{self, ElementKind, Scene};
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::{Setting, moved_points};
@@ -47,14 +47,20 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
             let own = limits.large_reference_error_percent();
             let own = own.map_or_else(String::new, |own| format!(", its own error is at most {}", percent(own)));
-            let criticals = limits.criticals_text(&axis).map_or_else(String::new, |criticals| criticals + "\n");
+            let critical =
+                |(element, at): &(ElementKind, Option<f64>)| Some(format!("{} with {}", load((*at)?), element.id()));
+            let criticals: Vec<String> = limits.criticals.iter().filter_map(critical).collect();
+            let criticals = match criticals.join(", ").as_str() {
+                "" => String::new(),
+                all => format!("critical load of this mesh, where the path from rest buckles or jumps: {all}\n"),
+            };
             format!("the reference solution is known at {known} of {all} loads{own}\n{criticals}\n")
         }
     };
     let ends = if limits.duration.is_some() { "finishes to" } else { "converges to" };
     let head = ["", &format!("within {GOOD} %"), &format!("within {USABLE} %"), ends, "strains > 10 %"];
     let row = |strip: &Strip| {
-        let [good, usable, converges, law] = strip.words(&axis, limits.range).map(|words| words.to_string());
+        let [good, usable, converges, law] = strip.words(&axis).map(|words| words.to_string());
         [strip.name(str::to_owned), good, usable, converges, law]
     };
     let rows: Vec<[String; 5]> =
@@ -73,18 +79,14 @@ fn table(limits: &MethodLimits) -> String {
     let first = if limits.duration.is_some() { "integrator,time_step" } else { "element,method,load_factor" };
     let mut text = format!("{first},displacement_x,displacement_y,error_percent,max_strain,inverted_elements\n");
     for strip in &limits.strips {
-        let Setting { element, stepping, .. } = strip.setting;
-        let method = strip.method_name(str::to_owned);
+        let name = strip.name(str::to_owned).replace(' ', ",");
+        let unit = strip.setting.stepping.map_or(1.0, |stepping| stepping.time_step);
         for point in strip.points.iter().filter(|point| point.is_compared) {
             let LimitPoint { factor, displacement, inverted_elements, .. } = point;
             let error = point.error_percent.map_or_else(String::new, |error| error.to_string());
             let max_strain = point.max_strain.unwrap_or_default();
-            let first = match stepping {
-                Some(stepping) => format!("{},{}", stepping.integrator.id(), factor * stepping.time_step),
-                None => format!("{},{method},{factor}", element.id()),
-            };
             let [x, y]: [f64; 2] = (*displacement).into();
-            let _ = writeln!(text, "{first},{x},{y},{error},{max_strain},{inverted_elements}");
+            let _ = writeln!(text, "{name},{},{x},{y},{error},{max_strain},{inverted_elements}", factor * unit);
         }
     }
     text
@@ -94,12 +96,13 @@ fn as_json(limits: &MethodLimits, scene: &Scene, warnings: &[String]) -> String 
     let axis = LoadAxis::of(scene);
     let strip = |strip: &Strip| {
         let (fails, Setting { element, method, iterations, stepping, .. }) = (strip.fails(), strip.setting);
+        let within = |percent: f64| strip.within(percent).filter(|end| strip.last_known() != Some(*end));
         let mut object = json!({
             "element": element.id(),
             "method": method.id(),
             "accept_after": stepping.map_or(iterations, |_| scene.solver.accept_after),
-            "within_1_percent": strip.within(GOOD),
-            "within_5_percent": strip.within(USABLE),
+            "within_1_percent": within(GOOD),
+            "within_5_percent": within(USABLE),
             "error_known_to": strip.last_known(),
             "converges_to": fails.first().map(|[end, _]| end),
             "converges_again_from": fails.first().map(|[_, again]| again).filter(|again| **again < limits.range[1]),

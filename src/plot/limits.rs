@@ -6,7 +6,7 @@ use crate::format::engineering;
 use crate::scene::Scene;
 use crate::sentence::sentence;
 use crate::study::figure::{Ink, LoadAxis};
-use crate::study::limits::{MethodLimits, Rating, Strip, axis_text, load_text};
+use crate::study::limits::{MethodLimits, Rating, Strip, load_text};
 use crate::study::path_chart::Render;
 
 /// Width by which bars overlap, so that no gap shows between those of one colour.
@@ -82,12 +82,12 @@ impl LimitsChart<'_> {
     /// Draws the name of the axis of loads, this far below the strips.
     pub fn name(&self, drawing: &mut dyn DrawTarget, below: f64, render: Render<'_>) {
         let at = [0.5 * (self.across[0] + self.across[1]), self.bottom() + below];
-        drawing.text(at, Anchor::Middle, &render(&axis_text(self.limits, self.loads)));
+        drawing.text(at, Anchor::Middle, &render(&self.limits.axis_text(self.loads)));
     }
 
     /// Draws the critical load, the curve and the strips; `ink` returns the colour of a strip's name.
     pub fn draw(&self, drawing: &mut dyn DrawTarget, render: Render<'_>, ink: &dyn Fn(&Strip) -> Ink) {
-        let (axis, range, [left, right]) = (self.axis(), self.limits.range, self.across);
+        let (axis, [left, right]) = (self.axis(), self.across);
         if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
             let x = axis.place(critical);
             let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
@@ -105,19 +105,16 @@ impl LimitsChart<'_> {
             if !is_complete {
                 drawing.rect([[left, y], [right - left, self.height]], Ink::Grid, 1.0);
             }
-            let pieces = strip.pieces(range);
-            for (i, piece) in pieces.iter().enumerate() {
-                let [from, to] = piece.range.map(|factor| axis.place(factor));
-                let is_joined = pieces.get(i + 1).is_some_and(|next| next.rating != Rating::NotConverged);
-                let overlap = if is_joined && is_complete { OVERLAP } else { 0.0 };
-                let bar = [[from, y], [(to - from + overlap).max(0.0), self.height]];
-                drawing.rect(bar, piece.rating.entry(false).0, opacity);
-                if piece.is_beyond_law {
+            let overlap = if is_complete { OVERLAP } else { 0.0 };
+            for (ends, (rating, is_beyond_law)) in strip.pieces() {
+                let [from, to] = ends.map(|factor| axis.place(factor));
+                drawing.rect([[from, y], [to - from + overlap, self.height]], rating.entry(false).0, opacity);
+                if is_beyond_law {
                     hatch(drawing, [from, to], [y, y + self.height], HATCH);
                 }
             }
             let done = || Some(sentence!("%{done} solved", done = format!("{:.0} %", 100.0 * strip.done)));
-            let end = if is_complete { strip.end(self.loads, range) } else { done() };
+            let end = if is_complete { strip.end(self.loads) } else { done() };
             let end = end.map_or_else(String::new, |end| render(&end));
             drawing.text([right + 12.0, base], Anchor::Start, &end);
         }

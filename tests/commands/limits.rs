@@ -12,6 +12,18 @@ fn strip<'a>(json: &'a Value, element: &str, method: &str) -> &'a Value {
     strips.find(|strip| strip["element"] == element && strip["method"] == method).unwrap()
 }
 
+/// Returns the numbers of a strip's row at a load: the load, the displacement, the error, NaN if it is not known, and others.
+fn row(table: &str, strip: &str, factor: f64) -> Option<Vec<f64>> {
+    let rows = table.lines().filter_map(|row| row.strip_prefix(strip)?.strip_prefix(','));
+    let numbers = |row: &str| row.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>();
+    rows.map(numbers).find(|row| (row[0] / factor - 1.0).abs() < 1e-9)
+}
+
+/// Returns the error of the first probe that `solve` states, with that of the reference, percent.
+fn stated_error(solved: &Value) -> f64 {
+    ["error_percent", "reference_error_percent"].map(|key| solved["probes"][0][key].as_f64().unwrap()).iter().sum()
+}
+
 /// Errors and displacements at the scene's own load are those of `solve`, and `warped` stops where `solve` stops.
 #[test]
 fn limits_are_those_of_solve() {
@@ -19,27 +31,18 @@ fn limits_are_those_of_solve() {
     let json = json_in(folder.path(), &["limits", "article", "--json", "--out", "t.csv", "--picture", "t.svg"]);
     let strips = json["strips"].as_array().unwrap();
     assert_eq!(strips.len(), 9, "three elements, each with three methods");
-    let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    let table = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     for strip in strips {
         let (element, method) = (strip["element"].as_str().unwrap(), strip["method"].as_str().unwrap());
         let set = [format!("beam.element=\"{element}\""), format!("solver.method=\"{method}\"")];
         let end = strip["converges_to"].as_f64();
-        let own = |row: &&str| {
-            row.starts_with(&format!("{element},{method},")) && {
-                let factor: f64 = row.split(',').nth(2).unwrap().parse().unwrap();
-                (factor - 1.0).abs() < 1e-9
-            }
-        };
-        let row = rows.lines().find(own);
+        let row = row(&table, &format!("{element},{method}"), 1.0);
         assert_eq!(row.is_none(), end.is_some_and(|end| end < 1.0), "{element} {method} at the scene's load: {end:?}");
         if let Some(row) = row {
             let solved = solve_json(&["article", "--set", &set[0], "--set", &set[1]]);
-            let probe = &solved["probes"][0];
-            let wanted = probe["error_percent"].as_f64().unwrap() + probe["reference_error_percent"].as_f64().unwrap();
-            let values: Vec<f64> = row.split(',').skip(2).map(|v| v.parse().unwrap()).collect();
-            let off = (values[3] / wanted - 1.0).abs();
-            assert!(off < 1e-6, "{element} {method}: error {}, solve says {wanted}", values[3]);
-            assert!((values[2] - probe["u"][1].as_f64().unwrap()).abs() < 1e-6, "{row}: {probe}");
+            let wanted = stated_error(&solved);
+            assert!((row[3] / wanted - 1.0).abs() < 1e-6, "{element} {method}: {row:?}, solve says {wanted}");
+            assert!((row[2] - first_u(&solved).y).abs() < 1e-6, "{element} {method}: {row:?}");
         }
         assert!(end.is_none() || method == "warped", "newton solves every load: {strip}");
         // More load makes the error of linear theory larger.
@@ -48,11 +51,17 @@ fn limits_are_those_of_solve() {
         }
     }
     assert!(strips.iter().any(|strip| strip["method"] == "warped" && strip["converges_to"].is_f64()));
+    assert!(json["critical_load_factor"].is_null(), "a beam that is bent does not buckle");
+    // Where a fine mesh folds, the reference is inaccurate: the error of a good element is not known there, that of one that
+    // locks is large all the same.
+    let [locks, good] = ["t3,newton", "t6,newton"].map(|strip| row(&table, strip, 10f64.sqrt()).unwrap()[3]);
+    assert!(good.is_nan() && locks > 5.0 && strip(&json, "t6", "newton")["within_5_percent"].is_null(), "{locks}");
     let picture = fs::read_to_string(folder.path().join("t.svg")).unwrap();
     assert!(picture.contains("does not converge") && picture.contains("q4 newton"));
 }
 
-/// Next to buckling `warped` stops; its limit of 1 % is that of `newton`, whose results are the same.
+/// Next to buckling `warped` stops; its limit of 1 % is that of `newton`, whose results are the same. There the error has a
+/// narrow peak, which is not missed.
 #[test]
 fn a_method_may_converge_again_beyond_buckling() {
     let json = json_in(Path::new("."), &["limits", "column", "--json"]);
@@ -62,7 +71,7 @@ fn a_method_may_converge_again_beyond_buckling() {
     let gaps: Vec<[f64; 2]> = serde_json::from_value(warped["does_not_converge"].clone()).unwrap();
     assert!(gaps[0] == [end, again] && again < 1.0 && gaps.len() == 2, "{gaps:?}");
     let [own, same] = [warped, newton].map(|strip| number(&strip["within_1_percent"]));
-    assert!((own / same - 1.0).abs() < 0.01, "{own} {same}");
+    assert!((own / same - 1.0).abs() < 0.01 && own < 0.72, "{own} {same}");
 }
 
 /// A scene that stops early has a strip of its own, with the errors that `solve` states.
@@ -76,15 +85,10 @@ fn an_early_stop_has_a_strip() {
     assert_eq!(strips.len(), 10, "nine strips, and the one of the early stop");
     let early: Vec<_> = strips.iter().filter(|strip| strip["accept_after"] == 2).collect();
     assert!(early.len() == 1 && early[0]["element"] == "q4" && early[0]["method"] == "warped", "{early:?}");
-    let rows = fs::read_to_string(folder.path().join("t.csv")).unwrap();
-    let own = rows.lines().filter(|row| row.starts_with("q4,warped:2,"));
-    let values =
-        own.map(|row| row.split(',').skip(2).map(|v| v.parse::<f64>().unwrap_or(f64::NAN)).collect::<Vec<_>>());
+    let table = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     let solved = solve_json(&[&["cantilever"][..], &settings].concat());
-    let probe = &solved["probes"][0];
-    let wanted = probe["error_percent"].as_f64().unwrap() + probe["reference_error_percent"].as_f64().unwrap();
-    let at_load = values.into_iter().find(|row| (row[0] - 1.0).abs() < 1e-9).unwrap();
-    assert!(solved["status"] == "accepted" && (at_load[3] / wanted - 1.0).abs() < 1e-6, "{at_load:?} {wanted}");
+    let (own, wanted) = (row(&table, "q4,warped:2", 1.0).unwrap(), stated_error(&solved));
+    assert!(solved["status"] == "accepted" && (own[3] / wanted - 1.0).abs() < 1e-6, "{own:?} {wanted}");
 }
 
 /// The load at which linear theory is 5 % off the exact beam is that of `curve`.
@@ -143,13 +147,15 @@ fn limits_of_a_motion_are_those_of_its_integrators() {
 }
 
 /// The ends do not lie between loads that were tried far apart: an arch jumps at 28.6 kN, the error of a column reaches
-/// 1 % at 198 N.
+/// 1 % at 198 N, and its critical load is Euler's.
 #[test]
 fn ends_are_those_of_single_solves() {
-    let [jump, error] = [28_600.0 / 8372.4, 198.0 / 218.05];
-    for (name, element, key, wanted) in
-        [("limit-arch", "t3", "law_ends_at", jump), ("limit-column", "t6", "within_1_percent", error)]
-    {
+    let [jump, error, euler] = [28_600.0, 198.0, PI.powi(2) * 1e6 / 12.0 / (4.0 * 900.0)];
+    for (name, element, key, wanted) in [
+        ("limit-arch", "t3", "law_ends_at", jump / 8372.4),
+        ("limit-column", "t6", "within_1_percent", error / 218.05),
+        ("limit-column", "q4", "critical_load_factor", euler / 218.05),
+    ] {
         let json = json_in(Path::new("."), &["limits", &file(name), "--json"]);
         let found = strip(&json, element, "newton")[key].as_f64().unwrap();
         assert!((found / wanted - 1.0).abs() < 0.015, "{element} {key}: {found}, {wanted}");

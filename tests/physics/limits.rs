@@ -15,11 +15,8 @@ fn solved(scene: &Scene, strip: &Strip, factor: f64) -> Option<(Option<f64>, boo
     simulation.solve().is_success().then_some(())?;
     let deformation = simulation.solution().deformation;
     let reference = Reference::of(&scene).ok().and_then(|reference| reference.first());
-    let error = reference.and_then(|reference| {
-        let name = &scene.probes.first()?.name;
-        let off = reference.percent(simulation.probe(name)?, reference.displacement);
-        Some(off + reference.own_error_percent)
-    });
+    let percent = |(probe, u): (ProbeReference, _)| probe.percent(u, probe.displacement) + probe.own_error_percent;
+    let error = reference.zip(simulation.probe(&scene.probes[0].name)).map(percent);
     Some((error, deformation.inverted_elements > 0 || deformation.max_strain > 0.1))
 }
 
@@ -33,7 +30,7 @@ fn stated_ends_of_limits_hold() {
         let Ok(limits) = MethodLimits::of(&scene, &go_on, &|_| {}) else { continue };
         let axis = warpbeam::study::figure::LoadAxis::of(&scene);
         for strip in &limits.strips {
-            let words = strip.words(&axis, limits.range).map(|words| words.to_string());
+            let words = strip.words(&axis).map(|words| words.to_string());
             let is_tried =
                 |range: [f64; 2]| strip.points.iter().any(|point| (range[0]..=range[1]).contains(&point.factor));
             let mut check = |column: usize, end: f64, holds: &dyn Fn(f64) -> Option<bool>| {

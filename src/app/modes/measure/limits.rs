@@ -177,7 +177,7 @@ struct StripChart<'a> {
 impl<'a> StripChart<'a> {
     fn new(ui: &Ui, whole: Rect, limits: &'a MethodLimits, loads: &'a LoadAxis) -> Self {
         let widths =
-            limits.strips.iter().filter_map(|strip| strip.end(loads, limits.range)).map(|end| {
+            limits.strips.iter().filter_map(|strip| strip.end(loads)).map(|end| {
                 ui.painter().layout_no_wrap(said(&end), FontId::proportional(SMALL), Color32::WHITE).size().x
             });
         let ends = widths.fold(ENDS, f32::max) + 20.0;
@@ -239,13 +239,13 @@ impl<'a> StripChart<'a> {
 
     /// Shows a strip; a click uses its method and element.
     fn strip(&self, ui: &Ui, row: usize, strip: &Strip, scene: &Scene, actions: &mut Vec<Action>) {
-        let LimitsChart { limits, loads, row: height, .. } = self.chart;
+        let LimitsChart { loads, row: height, .. } = self.chart;
         let (palette, top) = (Palette::new(ui.visuals()), self.rows.top() + (height * row as f64) as f32);
         let rect = Rect::from_x_y_ranges(self.rows.x_range(), top..=top + height as f32);
         let name = strip.name(|id| tr(id).to_owned());
         let Setting { element, method, iterations, stepping, .. } = strip.setting;
         let is_used = is_used(strip, scene);
-        let [good, usable, converges, law] = strip.words(loads, limits.range).map(|words| said(&words));
+        let [good, usable, converges, law] = strip.words(loads).map(|words| said(&words));
         let done = format!("{:.0} %", 100.0 * strip.done);
         let text = match stepping {
             _ if strip.done < 1.0 => "%{name}: %{done} of the loads are solved",
@@ -298,7 +298,7 @@ impl<'a> StripChart<'a> {
                 drawing.circle([x, y], 5.0, Ink::Load, Some(solid(2.0)));
             }
         }
-        let name = said(&limits::axis_text(chart.limits, chart.loads));
+        let name = said(&chart.limits.axis_text(chart.loads));
         // Painted like the other labels of the axis, it has no widget of its own.
         let place =
             Rect::from_x_y_ranges(self.rows.x_range(), self.rows.bottom() + LINE..=self.rows.bottom() + 2.0 * LINE);
