@@ -1,62 +1,46 @@
 //! Axes of drawings: their place, scales, grids and the marks of elements.
 
-use super::drawing::{Anchor, DrawTarget, Drawing, Text, solid};
+use super::drawing::{Anchor, DrawTarget};
 use crate::format::ticks;
 use crate::scene::ElementKind;
 use crate::study::figure::Ink;
 
-/// Size of a chart, and the space around its axes.
+/// Size of a chart, and the place of its axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChartFrame {
     pub size: [f64; 2],
-    pub left: f64,
-    pub right: f64,
-    pub top: f64,
-    pub bottom: f64,
+    /// Left and right ends of the horizontal axis.
+    pub across: [f64; 2],
+    /// Lower and upper ends of the vertical axis.
+    pub up: [f64; 2],
     /// Space around everything, beside the names of the axes.
     pub edge: f64,
 }
 
 impl ChartFrame {
     /// Frame in a file, with room for a legend on the right.
-    pub const FILE: Self = Self { size: [860.0, 560.0], left: 80.0, right: 190.0, top: 48.0, bottom: 60.0, edge: 8.0 };
-
-    /// Left and right ends of the horizontal axis.
-    pub fn across(&self) -> [f64; 2] {
-        [self.left, self.size[0] - self.right]
-    }
-
-    /// Lower and upper ends of the vertical axis.
-    pub fn up(&self) -> [f64; 2] {
-        [self.size[1] - self.bottom, self.top]
-    }
+    pub const FILE: Self = Self { size: [860.0, 560.0], across: [80.0, 670.0], up: [500.0, 48.0], edge: 8.0 };
 
     /// Upper left corner and size of the area between the axes.
     pub fn area(&self) -> [[f64; 2]; 2] {
-        let ([left, right], [bottom, top]) = (self.across(), self.up());
+        let ([left, right], [bottom, top]) = (self.across, self.up);
         [[left, top], [right - left, bottom - top]]
-    }
-
-    /// Adds a page with its title.
-    pub fn start(&self, drawing: &mut Drawing, title: &str) {
-        drawing.page(self.size);
-        drawing.put(Text { size: 16.0, ..Text::new([self.left, 28.0], Anchor::Start, title) });
     }
 
     /// Draws lines at places of both axes with their numbers, and the names of the axes.
     pub fn grid(&self, drawing: &mut dyn DrawTarget, [x, y]: [Vec<(f64, String)>; 2], [x_name, y_name]: [&str; 2]) {
-        let ([left, right], [bottom, top]) = (self.across(), self.up());
+        let ([left, right], [bottom, top]) = (self.across, self.up);
         for (at, text) in x {
-            drawing.line(&[[at, top], [at, bottom]], Ink::Grid, solid(1.0));
-            drawing.text([at, bottom + 18.0], Anchor::Middle, &text);
+            drawing.line(&[[at, top], [at, bottom]], Ink::Grid, 1.0, &[]);
+            drawing.text([at, bottom + 18.0], Anchor::Middle, Ink::Text, &text);
         }
         for (at, text) in y {
-            drawing.line(&[[left, at], [right, at]], Ink::Grid, solid(1.0));
-            drawing.text([left - 8.0, at + 4.0], Anchor::End, &text);
+            drawing.line(&[[left, at], [right, at]], Ink::Grid, 1.0, &[]);
+            drawing.text([left - 8.0, at + 4.0], Anchor::End, Ink::Text, &text);
         }
-        drawing.text([0.5 * (left + right), self.size[1] - self.edge - 6.0], Anchor::Middle, x_name);
-        let name = Text::new([self.edge + 14.0, 0.5 * (top + bottom)], Anchor::Middle, y_name);
-        drawing.put(Text { is_upright: true, ..name });
+        let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
+        drawing.text([middle[0], self.size[1] - self.edge - 6.0], Anchor::Middle, Ink::Text, x_name);
+        drawing.text([self.edge + 14.0, middle[1]], Anchor::Upright, Ink::Text, y_name);
     }
 }
 

@@ -2,67 +2,36 @@
 
 use crate::study::figure::Ink;
 
-/// Width and dashes of a line.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stroke {
-    pub width: f64,
-    /// Lengths of dashes and gaps; none for a solid line.
-    pub dashes: &'static [f64],
-}
-
-pub(crate) fn solid(width: f64) -> Stroke {
-    Stroke { width, dashes: &[] }
-}
-
 /// Point of a text that lies at the given position.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
     Middle,
     End,
+    /// Middle of a text that is read from below.
+    Upright,
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Text<'a> {
-    pub at: [f64; 2],
-    pub anchor: Anchor,
-    pub size: f64,
-    pub ink: Ink,
-    /// `true` if it is read from below.
-    pub is_upright: bool,
-    pub text: &'a str,
-}
-
-impl<'a> Text<'a> {
-    /// Usual height, pixels.
-    pub const SIZE: f64 = 13.0;
-
-    pub fn new(at: [f64; 2], anchor: Anchor, text: &'a str) -> Self {
-        Self { at, anchor, size: Self::SIZE, ink: Ink::Text, is_upright: false, text }
-    }
-}
+/// Size of the boxes of a key.
+pub(super) const KEY_BOX: f64 = 14.0;
 
 /// Target on which charts are drawn: a file, or the window. Places are in pixels from its upper left corner.
 pub(crate) trait DrawTarget {
-    fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke);
+    /// Draws a line through points. `dashes` are the lengths of its dashes and gaps, none for a solid line.
+    fn line(&mut self, points: &[[f64; 2]], ink: Ink, width: f64, dashes: &[f64]);
 
-    /// Fills a polygon, with a text that viewers of a file show beside the pointer; it may be empty.
-    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64, title: &str);
+    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64);
 
-    /// Fills a circle, or draws its outline.
-    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<Stroke>);
+    /// Fills a circle, or draws its outline with a line of this width.
+    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<f64>);
 
     /// Fills a rectangle, which is given by its upper left corner and its size.
     fn rect(&mut self, corner_and_size: [[f64; 2]; 2], ink: Ink, opacity: f64);
 
-    fn put(&mut self, text: Text<'_>);
+    fn text(&mut self, at: [f64; 2], anchor: Anchor, ink: Ink, text: &str);
 
     /// Draws what follows in a rectangle only, until it is called with `None`.
     fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>);
-
-    fn text(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
-        self.put(Text::new(at, anchor, text));
-    }
 }
 
 /// A file of one page or of several, one below the other. Places are those on the last page.
@@ -77,25 +46,20 @@ pub struct Drawing {
 }
 
 impl DrawTarget for Drawing {
-    fn line(&mut self, points: &[[f64; 2]], ink: Ink, stroke: Stroke) {
-        let line = match points.iter().map(|point| self.place(*point)).collect::<Vec<_>>()[..] {
-            [[x1, y1], [x2, y2]] => format!("line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\""),
-            _ => format!("polyline points=\"{}\" stroke-linejoin=\"round\"", self.list(points)),
-        };
-        self.elements.push(format!("<{line}{}/>", stroked(ink, stroke)));
+    fn line(&mut self, points: &[[f64; 2]], ink: Ink, width: f64, dashes: &[f64]) {
+        let dashes = dashes.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+        let dashes = if dashes.is_empty() { dashes } else { format!(" stroke-dasharray=\"{dashes}\"") };
+        let (points, line) = (self.list(points), outlined(ink, width));
+        self.elements.push(format!("<polyline points=\"{points}\"{line}{dashes}/>"));
     }
 
-    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64, title: &str) {
-        let polygon = format!("polygon points=\"{}\"{}", self.list(points), filled(ink, opacity));
-        self.elements.push(match title {
-            "" => format!("<{polygon}/>"),
-            _ => format!("<{polygon}><title>{}</title></polygon>", escape(title)),
-        });
+    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64) {
+        self.elements.push(format!("<polygon points=\"{}\"{}/>", self.list(points), filled(ink, opacity)));
     }
 
-    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<Stroke>) {
+    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<f64>) {
         let ([x, y], radius) = (self.place(middle), short(radius));
-        let paint = outline.map_or_else(|| filled(ink, 1.0), |stroke| stroked(ink, stroke));
+        let paint = outline.map_or_else(|| filled(ink, 1.0), |width| outlined(ink, width));
         self.elements.push(format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{paint}/>"));
     }
 
@@ -104,20 +68,15 @@ impl DrawTarget for Drawing {
         self.elements.push(format!("<rect{rect}{}/>", filled(ink, opacity)));
     }
 
-    fn put(&mut self, Text { at, anchor, size, ink, is_upright, text }: Text<'_>) {
-        let [x, y] = self.place(at);
-        let place = match is_upright {
-            true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
-            false => format!(" x=\"{x}\" y=\"{y}\""),
-        };
-        let anchor = match anchor {
+    fn text(&mut self, at: [f64; 2], anchor: Anchor, ink: Ink, text: &str) {
+        let ([x, y], color, text) = (self.place(at), hex(ink), escape(text));
+        let place = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
+            Anchor::Upright => &format!(" text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\""),
         };
-        let size = if size == Text::SIZE { String::new() } else { format!(" font-size=\"{size}\"") };
-        let fill = if ink == Ink::Text { String::new() } else { format!(" fill=\"{}\"", hex(ink)) };
-        self.elements.push(format!("<text{place}{anchor}{size}{fill}>{}</text>", escape(text)));
+        self.elements.push(format!("<text x=\"{x}\" y=\"{y}\"{place} fill=\"{color}\">{text}</text>"));
     }
 
     fn clip(&mut self, corner_and_size: Option<[[f64; 2]; 2]>) {
@@ -131,19 +90,28 @@ impl DrawTarget for Drawing {
 }
 
 impl Drawing {
-    /// Adds white paper.
-    pub(super) fn page(&mut self, size: [f64; 2]) {
+    /// Adds white paper with a title, which begins at `left`; it may be empty.
+    pub(super) fn page(&mut self, size: [f64; 2], left: f64, title: &str) {
         self.top = self.size[1];
         self.size = [self.size[0].max(size[0]), self.top + size[1]];
         self.rect([[0.0; 2], size], Ink::Paper, 1.0);
+        let ([x, y], title) = (self.place([left, 28.0]), escape(title));
+        self.elements.push(format!("<text x=\"{x}\" y=\"{y}\" font-size=\"16\">{title}</text>"));
+    }
+
+    /// Draws an entry of a key, a box in its colour with its name; returns the left end of the next one.
+    pub(super) fn key(&mut self, [x, y]: [f64; 2], (ink, name): (Ink, &str)) -> f64 {
+        self.rect([[x, y], [KEY_BOX; 2]], ink, 1.0);
+        self.text([x + KEY_BOX + 6.0, y + 12.0], Anchor::Start, Ink::Text, name);
+        x + 46.0 + 7.4 * name.chars().count() as f64
     }
 
     /// Returns the drawing as an SVG document.
     pub fn svg(&self) -> String {
-        let ([width, height], text, elements) = (self.size, Text::SIZE, self.elements.join("\n"));
+        let ([width, height], elements) = (self.size, self.elements.join("\n"));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             font-family=\"Ubuntu, sans-serif\" font-size=\"{text}\">\n{elements}\n</svg>\n"
+             font-family=\"Ubuntu, sans-serif\" font-size=\"13\" stroke-linejoin=\"round\">\n{elements}\n</svg>\n"
         )
     }
 
@@ -164,14 +132,11 @@ impl Drawing {
 }
 
 fn filled(ink: Ink, opacity: f64) -> String {
-    let opacity = if opacity < 1.0 { format!(" opacity=\"{opacity}\"") } else { String::new() };
-    format!(" fill=\"{}\"{opacity}", hex(ink))
+    format!(" fill=\"{}\" opacity=\"{opacity}\"", hex(ink))
 }
 
-fn stroked(ink: Ink, Stroke { width, dashes }: Stroke) -> String {
-    let dashes: Vec<String> = dashes.iter().map(f64::to_string).collect();
-    let dashes = if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", dashes.join(" ")) };
-    format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(ink))
+fn outlined(ink: Ink, width: f64) -> String {
+    format!(" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"", hex(ink))
 }
 
 /// Rounds to hundredths of a pixel.

@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 
 use super::axes::{ChartAxis, ChartFrame};
-use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing};
 use crate::format::{number, prefix, rounded};
 use crate::study::figure::{Figure, FigureQuantity, Ink, Mark};
 
@@ -13,13 +13,13 @@ const TABLE: f64 = 330.0;
 pub fn figures(figures: impl IntoIterator<Item: Borrow<Figure>>) -> Drawing {
     let ChartFrame { size: [width, height], .. } = ChartFrame::FILE;
     let size = [width + TABLE, height];
-    let frame = ChartFrame { size, left: 86.0, right: TABLE + 30.0, top: 56.0, bottom: 64.0, ..ChartFrame::FILE };
+    let frame = ChartFrame { size, across: [86.0, width - 30.0], up: [height - 64.0, 56.0], ..ChartFrame::FILE };
     let mut drawing = Drawing::default();
     for figure in figures {
         let figure = figure.borrow();
-        frame.start(&mut drawing, figure.title.as_str());
+        drawing.page(size, frame.across[0], &figure.title);
         chart(&mut drawing, figure, figure.corners(), &frame);
-        table(&mut drawing, figure, frame.across()[1] + 24.0, size[0] - 14.0);
+        table(&mut drawing, figure, frame.across[1] + 24.0, size[0] - 14.0);
     }
     drawing
 }
@@ -31,7 +31,7 @@ pub(crate) fn chart(
     [mut low, mut high]: [[f64; 2]; 2],
     frame: &ChartFrame,
 ) -> [ChartAxis; 2] {
-    let (ends, area) = ([frame.across(), frame.up()], frame.area());
+    let (ends, area) = ([frame.across, frame.up], frame.area());
     if figure.has_one_scale() {
         let scale = ((high[0] - low[0]) / area[1][0]).max((high[1] - low[1]) / area[1][1]);
         for (i, size) in area[1].into_iter().enumerate() {
@@ -70,8 +70,8 @@ fn table(drawing: &mut Drawing, figure: &Figure, left: f64, right: f64) {
     const ROW: f64 = 21.0;
     let mut y = 66.0;
     let put = |drawing: &mut Drawing, [name, value]: [&str; 2], y: f64| {
-        drawing.text([left + 26.0, y], Anchor::Start, name);
-        drawing.text([right, y], Anchor::End, value);
+        drawing.text([left + 26.0, y], Anchor::Start, Ink::Text, name);
+        drawing.text([right, y], Anchor::End, Ink::Text, value);
     };
     let [name, value] = &figure.head;
     put(drawing, [name, value], y);
@@ -93,11 +93,11 @@ pub(crate) fn draw(drawing: &mut dyn DrawTarget, ink: Ink, mark: Mark, places: &
         _ => &[],
     };
     if mark.is_line() {
-        return drawing.line(places, ink, Stroke { width: 2.2, dashes });
+        return drawing.line(places, ink, 2.2, dashes);
     }
     for &[x, y] in places {
         match mark {
-            Mark::Ring => drawing.circle([x, y], size, ink, Some(solid(1.5))),
+            Mark::Ring => drawing.circle([x, y], size, ink, Some(1.5)),
             _ => drawing.circle([x, y], size, ink, None),
         }
     }

@@ -1,7 +1,7 @@
 //! Limits of methods and elements as a drawing: the load curve above, and a strip for each method and element below it.
 
 use super::axes::ChartAxis;
-use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, Text, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing, KEY_BOX};
 use crate::format::engineering;
 use crate::scene::Scene;
 use crate::sentence::sentence;
@@ -22,17 +22,21 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     let (across, strips) = ([150.0, 760.0], 44.0 + curve[usize::from(has_curve)]);
     let chart = LimitsChart { limits, loads, across, curve, has_curve, strips, row: 26.0, height: 18.0 };
     let (bottom, mut drawing) = (chart.bottom(), Drawing::default());
-    drawing.page([1010.0, bottom + 84.0]);
-    drawing.put(Text { size: 16.0, ..Text::new([20.0, 30.0], Anchor::Start, scene.name.as_str()) });
+    drawing.page([1010.0, bottom + 84.0], 20.0, &scene.name);
     chart.grid(&mut drawing);
     // The scene's own load.
     if limits.contains(1.0) {
         let own = chart.axis().place(1.0);
-        drawing.line(&[[own, curve[0]], [own, bottom]], Ink::Curve, solid(1.0));
-        drawing.text([own, curve[0] - 6.0], Anchor::Middle, "the scene");
+        drawing.line(&[[own, curve[0]], [own, bottom]], Ink::Curve, 1.0, &[]);
+        drawing.text([own, curve[0] - 6.0], Anchor::Middle, Ink::Text, "the scene");
     }
     chart.draw(&mut drawing, &ToString::to_string, &|_| Ink::Text);
-    legend(&mut drawing, bottom + 46.0, limits.duration.is_some());
+    let (mut x, y) = (20.0, bottom + 46.0);
+    for (ink, name) in Rating::ALL.map(|rating| rating.entry(limits.duration.is_some())) {
+        x = drawing.key([x, y], (ink, &name.to_string()));
+    }
+    drawing.key([x, y], (Ink::Paper, "strains above 10 %, or inverted elements"));
+    hatch(&mut drawing, [[x, y], [KEY_BOX; 2]], HATCH);
     chart.name(&mut drawing, 38.0, &ToString::to_string);
     drawing
 }
@@ -74,15 +78,15 @@ impl LimitsChart<'_> {
     /// Draws the lines and numbers of the axis of loads.
     pub fn grid(&self, drawing: &mut dyn DrawTarget) {
         for (x, factor) in self.axis().ticks() {
-            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Ink::Grid, solid(1.0));
-            drawing.text([x, self.bottom() + 18.0], Anchor::Middle, &load_text(self.loads, factor));
+            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Ink::Grid, 1.0, &[]);
+            drawing.text([x, self.bottom() + 18.0], Anchor::Middle, Ink::Text, &load_text(self.loads, factor));
         }
     }
 
     /// Draws the name of the axis of loads, this far below the strips.
     pub fn name(&self, drawing: &mut dyn DrawTarget, below: f64, render: Render<'_>) {
         let at = [0.5 * (self.across[0] + self.across[1]), self.bottom() + below];
-        drawing.text(at, Anchor::Middle, &render(&self.limits.axis_text(self.loads)));
+        drawing.text(at, Anchor::Middle, Ink::Text, &render(&self.limits.axis_text(self.loads)));
     }
 
     /// Draws the critical load, the curve and the strips; `ink` returns the colour of a strip's name.
@@ -90,15 +94,15 @@ impl LimitsChart<'_> {
         let (axis, [left, right]) = (self.axis(), self.across);
         if let Some(critical) = self.limits.critical().filter(|&critical| self.limits.contains(critical)) {
             let x = axis.place(critical);
-            let dashes = Stroke { dashes: &[6.0, 4.0], ..solid(1.5) };
-            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], Rating::NotConverged.entry(false).0, dashes);
+            let (ink, _) = Rating::NotConverged.entry(false);
+            drawing.line(&[[x, self.curve[0]], [x, self.bottom()]], ink, 1.5, &[6.0, 4.0]);
         }
         self.draw_curve(drawing, render);
         for (row, strip) in self.limits.strips.iter().enumerate() {
             let y = self.strips + self.row * row as f64;
             let base = y + 0.5 * self.height + 5.0;
             let name = strip.name(|id| render(&id.into()));
-            drawing.put(Text { ink: ink(strip), ..Text::new([left - 12.0, base], Anchor::End, &name) });
+            drawing.text([left - 12.0, base], Anchor::End, ink(strip), &name);
             // The colours of a strip that is not complete may still change.
             let is_complete = strip.done >= 1.0;
             let opacity = if is_complete { 1.0 } else { 0.35 };
@@ -110,13 +114,13 @@ impl LimitsChart<'_> {
                 let [from, to] = ends.map(|factor| axis.place(factor));
                 drawing.rect([[from, y], [to - from + overlap, self.height]], rating.entry(false).0, opacity);
                 if is_beyond_law {
-                    hatch(drawing, [from, to], [y, y + self.height], HATCH);
+                    hatch(drawing, [[from, y], [to - from, self.height]], HATCH);
                 }
             }
             let done = || Some(sentence!("%{done} solved", done = format!("{:.0} %", 100.0 * strip.done)));
             let end = if is_complete { strip.end(self.loads) } else { done() };
             let end = end.map_or_else(String::new, |end| render(&end));
-            drawing.text([right + 12.0, base], Anchor::Start, &end);
+            drawing.text([right + 12.0, base], Anchor::Start, Ink::Text, &end);
         }
     }
 
@@ -126,44 +130,31 @@ impl LimitsChart<'_> {
             return;
         };
         for (y, length) in up.ticks() {
-            drawing.line(&[[left, y], [right, y]], Ink::Grid, solid(1.0));
-            drawing.text([left - 12.0, y + 4.0], Anchor::End, &engineering(length, "m"));
+            drawing.line(&[[left, y], [right, y]], Ink::Grid, 1.0, &[]);
+            drawing.text([left - 12.0, y + 4.0], Anchor::End, Ink::Text, &engineering(length, "m"));
         }
         let length = |u: &Option<nalgebra::Vector2<f64>>| u.map(|u| u.norm()).filter(|u| *u > 0.0);
         for known in self.limits.reference.split(|(_, u)| length(u).is_none()) {
             let places = known.iter().filter_map(|(factor, u)| Some([axis.place(*factor), up.place(length(u)?)]));
-            drawing.line(&places.collect::<Vec<_>>(), Ink::Reference, solid(2.0));
+            drawing.line(&places.collect::<Vec<_>>(), Ink::Reference, 2.0, &[]);
         }
         let name = render(&sentence!("reference displacement\nof the first probe"));
         for (i, line) in name.lines().enumerate() {
-            drawing.text([right + 12.0, top + 12.0 + 18.0 * i as f64], Anchor::Start, line);
+            drawing.text([right + 12.0, top + 12.0 + 18.0 * i as f64], Anchor::Start, Ink::Text, line);
         }
     }
 }
 
-/// Draws slanted lines over a bar.
-pub(crate) fn hatch(drawing: &mut dyn DrawTarget, [from, to]: [f64; 2], [top, bottom]: [f64; 2], ink: Ink) {
+/// Draws slanted lines over a bar, which is given by its upper left corner and its size.
+pub(crate) fn hatch(drawing: &mut dyn DrawTarget, bar: [[f64; 2]; 2], ink: Ink) {
     const GAP: f64 = 7.0;
-    drawing.clip(Some([[from, top], [(to - from).max(0.0), bottom - top]]));
+    let [[left, top], [width, height]] = bar;
+    drawing.clip(Some(bar));
     // Lines of neighbouring bars meet.
-    let mut x = (from / GAP).floor() * GAP - (bottom - top);
-    while x < to {
-        drawing.line(&[[x, bottom], [x + bottom - top, top]], ink, solid(1.2));
+    let mut x = (left / GAP).floor() * GAP - height;
+    while x < left + width {
+        drawing.line(&[[x, top + height], [x + height, top]], ink, 1.2, &[]);
         x += GAP;
     }
     drawing.clip(None);
-}
-
-fn legend(drawing: &mut Drawing, y: f64, moves: bool) {
-    const BOX: f64 = 14.0;
-    let mut x = 20.0;
-    for (ink, name) in Rating::ALL.map(|rating| rating.entry(moves)) {
-        let text = name.to_string();
-        drawing.rect([[x, y], [BOX, BOX]], ink, 1.0);
-        drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, &text);
-        x += 46.0 + 7.4 * text.chars().count() as f64;
-    }
-    drawing.rect([[x, y], [BOX, BOX]], Ink::Paper, 1.0);
-    hatch(drawing, [x, x + BOX], [y, y + BOX], HATCH);
-    drawing.text([x + BOX + 6.0, y + 12.0], Anchor::Start, "strains above 10 %, or inverted elements");
 }

@@ -15,7 +15,7 @@ pub use trade::study;
 #[cfg(feature = "app")]
 pub(crate) use {
     axes::{ChartAxis, ChartFrame, mark},
-    drawing::{Anchor, DrawTarget, Stroke, Text, solid},
+    drawing::{Anchor, DrawTarget},
     figure::{chart, draw},
     limits::{LimitsChart, hatch},
     trade::{SMALLEST_ERROR, StudyChart},

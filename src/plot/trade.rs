@@ -1,7 +1,7 @@
 //! Studies as drawings: error over time with the Pareto front, both axes logarithmic.
 
 use super::axes::{ChartAxis, ChartFrame, mark};
-use super::drawing::{Anchor, DrawTarget, Drawing, Stroke, Text, solid};
+use super::drawing::{Anchor, DrawTarget, Drawing};
 use crate::dynamics::INTEGRATORS;
 use crate::format::number;
 use crate::method::METHODS;
@@ -15,8 +15,7 @@ pub(crate) const SMALLEST_ERROR: f64 = 1e-3;
 /// Errors above this are drawn at it: those of an iteration that diverges are off the picture.
 const LARGEST_ERROR: f64 = 1e3;
 const WIDTH: f64 = 1.5;
-
-const DASHED: Stroke = Stroke { width: WIDTH, dashes: &[6.0, 4.0] };
+const DASHES: &[f64] = &[6.0, 4.0];
 
 /// Draws the error of a study over its time. Each colour of the key is shown with every element.
 pub fn study(study: &Study) -> Drawing {
@@ -32,13 +31,12 @@ pub fn study(study: &Study) -> Drawing {
     };
     let (mut drawing, frame) = (Drawing::default(), ChartFrame::FILE);
     let chart = StudyChart::new(Some(study), |m| m.milliseconds, [real_time.as_slice(), &[]], &frame);
-    frame.start(&mut drawing, &format!("{}: {title}", study.scene));
+    drawing.page(frame.size, frame.across[0], &format!("{}: {title}", study.scene));
     chart.grid(&mut drawing, &frame, names);
     if let Some(time) = real_time {
-        let ([bottom, top], at) = (frame.up(), chart.axes[0].place(time));
-        drawing.line(&[[at, top], [at, bottom]], Ink::Limit, DASHED);
-        let label = Text::new([at, top - 6.0], Anchor::Middle, "real time");
-        drawing.put(Text { ink: Ink::Curve, ..label });
+        let ([bottom, top], at) = (frame.up, chart.axes[0].place(time));
+        drawing.line(&[[at, top], [at, bottom]], Ink::Limit, WIDTH, DASHES);
+        drawing.text([at, top - 6.0], Anchor::Middle, Ink::Curve, "real time");
     }
     chart.draw(&mut drawing);
     key(&mut drawing, &frame, moves);
@@ -66,7 +64,7 @@ impl<'a> StudyChart<'a> {
         };
         let mut marks: Vec<_> = study.into_iter().flat_map(measured).collect();
         let values = |i: usize| marks.iter().map(move |(values, _)| values[i]).chain(usual[i].iter().copied());
-        let axes = [ChartAxis::decades(values(0), frame.across()), ChartAxis::decades(values(1), frame.up())];
+        let axes = [ChartAxis::decades(values(0), frame.across), ChartAxis::decades(values(1), frame.up)];
         marks.iter_mut().for_each(|(at, _)| *at = [0, 1].map(|i| axes[i].place(at[i])));
         Self { axes, marks }
     }
@@ -86,12 +84,12 @@ impl<'a> StudyChart<'a> {
     pub fn draw(&self, drawing: &mut dyn DrawTarget) {
         let mut front: Vec<_> = self.marks.iter().filter(|(_, m)| m.pareto).map(|(at, _)| *at).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        drawing.line(&front, Ink::Curve, solid(WIDTH));
+        drawing.line(&front, Ink::Curve, WIDTH, &[]);
         for (at, m) in &self.marks {
             let mark = mark(*at, m.setting.element, if m.pareto { 5.5 } else { 3.5 });
             let is_faint = if m.motion.is_some() { m.setting.method == MethodKind::Linear } else { !m.converged };
             let opacity = if is_faint { 0.45 } else { 1.0 };
-            drawing.polygon(&mark, Ink::of(&m.setting), opacity, &m.setting.to_string());
+            drawing.polygon(&mark, Ink::of(&m.setting), opacity);
         }
     }
 }
@@ -104,23 +102,22 @@ fn error(bound: f64) -> f64 {
 /// Draws the key: each colour with every element, and the lines.
 fn key(drawing: &mut Drawing, frame: &ChartFrame, moves: bool) {
     const ROW: f64 = 22.0;
-    let (x, mut y) = (frame.across()[1], frame.top + 10.0);
+    let (x, mut y) = (frame.across[1], frame.up[1] + 10.0);
     let integrators = INTEGRATORS.iter().map(|entry| (entry.id, entry.colors)).filter(|_| moves);
     for (id, colors) in METHODS.iter().map(|entry| (entry.id, entry.colors)).filter(|_| !moves).chain(integrators) {
         for element in ElementKind::all() {
-            drawing.polygon(&mark([x + 22.0, y], element, 5.0), Ink::Solution(colors), 1.0, "");
-            drawing.text([x + 36.0, y + 4.0], Anchor::Start, &format!("{} {id}", element.id()));
+            drawing.polygon(&mark([x + 22.0, y], element, 5.0), Ink::Solution(colors), 1.0);
+            drawing.text([x + 36.0, y + 4.0], Anchor::Start, Ink::Text, &format!("{} {id}", element.id()));
             y += ROW;
         }
     }
-    for (stroke, name) in
-        [(solid(WIDTH), "Pareto front"), (DASHED, "real time")].into_iter().take(1 + usize::from(moves))
-    {
-        drawing.line(&[[x + 12.0, y], [x + 32.0, y]], Ink::Curve, stroke);
-        drawing.text([x + 36.0, y + 4.0], Anchor::Start, name);
+    let lines: [(&[f64], _); 2] = [(&[], "Pareto front"), (DASHES, "real time")];
+    for (dashes, name) in lines.into_iter().take(1 + usize::from(moves)) {
+        drawing.line(&[[x + 12.0, y], [x + 32.0, y]], Ink::Curve, WIDTH, dashes);
+        drawing.text([x + 36.0, y + 4.0], Anchor::Start, Ink::Text, name);
         y += ROW;
     }
     if moves {
-        drawing.text([x + 36.0, y + 4.0], Anchor::Start, "faint: linear theory");
+        drawing.text([x + 36.0, y + 4.0], Anchor::Start, Ink::Text, "faint: linear theory");
     }
 }

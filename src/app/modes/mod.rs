@@ -11,6 +11,6 @@ use crate::app::session::facts::{self, Curve};
 use crate::app::task::keyed::Keyed;
 use crate::app::viewport::projection::Projection;
 use crate::app::widgets::chart::{self, ChartPainter};
-use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget, Text, solid};
+use crate::plot::{self, Anchor, ChartAxis, ChartFrame, DrawTarget};
 use crate::study::Setting;
 use crate::study::figure::{Figure, FigureQuantity, FigureSeries, Ink, LoadAxis, Mark, dominant_axis};

@@ -268,7 +268,7 @@ pub(crate) fn show_motion(ui: &mut Ui, chosen: &mut MotionPlot, session: &Sessio
     let (mut painter, [time, value]) = figure::plot(ui, &drawn, [low, high]);
     // Displayed moment, if it is not the latest.
     if let Some(x) = playback.shown.map(|shown| time.place(shown)) {
-        painter.line(&[low[1], high[1]].map(|end| [x, value.place(end)]), Ink::Text, solid(1.0));
+        painter.line(&[low[1], high[1]].map(|end| [x, value.place(end)]), Ink::Text, 1.0, &[]);
     }
 }
 

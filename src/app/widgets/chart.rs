@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape,
 
 use crate::app::widgets::palette::{Palette, SMALL};
 use crate::app::widgets::text::Labels;
-use crate::plot::{self, Anchor, ChartFrame, DrawTarget, Text};
+use crate::plot::{Anchor, ChartFrame, DrawTarget};
 use crate::study::figure::Ink;
 
 /// Paints charts in the window, from an upper left corner.
@@ -41,7 +41,7 @@ impl ChartPainter {
 }
 
 impl DrawTarget for ChartPainter {
-    fn line(&mut self, points: &[[f64; 2]], ink: Ink, plot::Stroke { width, dashes }: plot::Stroke) {
+    fn line(&mut self, points: &[[f64; 2]], ink: Ink, width: f64, dashes: &[f64]) {
         let (places, stroke) = (self.places(points), self.stroke(ink, width));
         if let &[dash, gap] = dashes {
             self.painter.extend(Shape::dashed_line(&places, stroke, dash as f32, gap as f32));
@@ -53,14 +53,14 @@ impl DrawTarget for ChartPainter {
         }
     }
 
-    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64, _title: &str) {
+    fn polygon(&mut self, points: &[[f64; 2]], ink: Ink, opacity: f64) {
         let color = self.palette.ink(ink).gamma_multiply(opacity as f32);
         self.painter.add(Shape::convex_polygon(self.places(points), color, Stroke::NONE));
     }
 
-    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<plot::Stroke>) {
+    fn circle(&mut self, middle: [f64; 2], radius: f64, ink: Ink, outline: Option<f64>) {
         let fill = if outline.is_some() { Color32::TRANSPARENT } else { self.palette.ink(ink) };
-        let stroke = outline.map_or(Stroke::NONE, |outline| self.stroke(ink, outline.width));
+        let stroke = outline.map_or(Stroke::NONE, |width| self.stroke(ink, width));
         self.painter.circle(self.place(middle), radius as f32, fill, stroke);
     }
 
@@ -69,20 +69,16 @@ impl DrawTarget for ChartPainter {
         self.painter.rect_filled(self.area(corner_and_size), 0.0, color);
     }
 
-    fn put(&mut self, Text { at, anchor, size, ink, is_upright, text }: Text<'_>) {
-        // Texts of the usual size are as large as the small texts of the window.
-        let font = FontId::proportional(SMALL / Text::SIZE as f32 * size as f32);
-        let (at, color) = (self.place(at), self.palette.ink(ink));
+    fn text(&mut self, at: [f64; 2], anchor: Anchor, ink: Ink, text: &str) {
+        let (at, color, font) = (self.place(at), self.palette.ink(ink), FontId::proportional(SMALL));
         let galley = self.painter.layout_no_wrap(text.to_owned(), font, color);
         let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(0.0, |glyph| glyph.pos.y);
-        let before = match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => 0.5 * galley.size().x,
-            Anchor::End => galley.size().x,
-        };
-        let (corner, angle) = match is_upright {
-            true => (at + vec2(-base, before), -std::f32::consts::FRAC_PI_2),
-            false => (at - vec2(before, base), 0.0),
+        let width = galley.size().x;
+        let (corner, angle) = match anchor {
+            Anchor::Start => (at - vec2(0.0, base), 0.0),
+            Anchor::Middle => (at - vec2(0.5 * width, base), 0.0),
+            Anchor::End => (at - vec2(width, base), 0.0),
+            Anchor::Upright => (at + vec2(-base, 0.5 * width), -std::f32::consts::FRAC_PI_2),
         };
         self.painter.add(TextShape::new(corner, galley, color).with_angle(angle));
     }
@@ -97,7 +93,7 @@ impl DrawTarget for ChartPainter {
 pub(crate) fn area(ui: &mut Ui) -> (Response, ChartFrame, ChartPainter) {
     let response = ui.allocate_response(ui.available_size(), Sense::CLICK);
     let size = [response.rect.width(), response.rect.height()].map(f64::from);
-    let frame = ChartFrame { size, left: 68.0, right: 16.0, top: 8.0, bottom: 40.0, edge: 0.0 };
+    let frame = ChartFrame { size, across: [68.0, size[0] - 16.0], up: [size[1] - 40.0, 8.0], edge: 0.0 };
     let mut painter = ChartPainter::new(ui, response.rect.min);
     painter.rect(frame.area(), Ink::Paper, 1.0);
     (response, frame, painter)

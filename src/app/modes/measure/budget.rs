@@ -5,7 +5,7 @@ use crate::app::diagnosis::drift_text;
 use crate::app::language::bound_percent;
 use crate::app::session::clock::FRAMES;
 use crate::exact_beam::error_percent;
-use crate::plot::{SMALLEST_ERROR, Stroke, StudyChart, mark};
+use crate::plot::{SMALLEST_ERROR, StudyChart, mark};
 use crate::scene::limits::BUDGET_MS;
 use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
 
@@ -379,7 +379,7 @@ fn legend(ui: &mut Ui, moves: bool) {
         for element in ElementKind::all() {
             legend::entry(ui, element.id(), MARK, &|ui, rect| {
                 let mut painter = ChartPainter::new(ui, rect.center());
-                painter.polygon(&mark([0.0; 2], element, 5.0), Ink::Text, 1.0, "");
+                painter.polygon(&mark([0.0; 2], element, 5.0), Ink::Text, 1.0);
             });
         }
         ui.label(RichText::new(tr("line: Pareto front; cross: current setting; ring: fastest")).small());
@@ -389,7 +389,7 @@ fn legend(ui: &mut Ui, moves: bool) {
 fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     /// Times, ms, and errors, percent, that are always in the plot.
     const USUAL: [&[f64]; 2] = [&[1e-2, 1e2], &[SMALLEST_ERROR, 1e2]];
-    const DASHES: Stroke = Stroke { width: 1.0, dashes: &[4.0, 3.0] };
+    const DASHES: &[f64] = &[4.0, 3.0];
     let (response, frame, mut drawing) = chart::area(ui);
     let plot = StudyChart::new(budget.study, frame_ms, USUAL, &frame);
     let (area, [[left, top], [width, height]]) = (frame.area(), frame.area());
@@ -398,8 +398,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     if let Some(own) = budget.study.map(|study| study.own_error_percent).filter(|own| *own > SMALLEST_ERROR) {
         let y = plot.axes[1].place(own);
         drawing.rect([[left, y], [width, bottom - y]], Ink::Limit, 0.18);
-        let text = Text::new([left + 6.0, bottom - 6.0], Anchor::Start, tr("the reference's own error"));
-        drawing.put(Text { ink: Ink::Limit, ..text });
+        drawing.text([left + 6.0, bottom - 6.0], Anchor::Start, Ink::Limit, tr("the reference's own error"));
     }
     let moves = budget.scene.analysis == Analysis::Dynamic;
     let time = if moves { "time of a frame at 60 Hz, ms" } else { "time of a solve, ms" };
@@ -408,17 +407,17 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
         [budget.demand.max_time_ms, budget.demand.max_error_percent].map(Option::unwrap_or_default);
     drawing.clip(Some(area));
     let [x, y] = plot.place([most_time, most_error]);
-    drawing.line(&[[x, top], [x, bottom]], Ink::Limit, DASHES);
-    drawing.line(&[[left, y], [right, y]], Ink::Limit, DASHES);
+    drawing.line(&[[x, top], [x, bottom]], Ink::Limit, 1.0, DASHES);
+    drawing.line(&[[left, y], [right, y]], Ink::Limit, 1.0, DASHES);
     drawing.clip(None);
     plot.draw(&mut drawing);
     let applied = plot.marks.iter().find(|(_, m)| m.is_applied_to(budget.scene)).map(|(at, _)| *at);
     if let Some([x, y]) = applied.or(budget.shown.filter(|_| budget.current).map(|shown| plot.place(shown))) {
-        drawing.line(&[[x - 9.0, y], [x + 9.0, y]], Ink::Text, solid(2.0));
-        drawing.line(&[[x, y - 9.0], [x, y + 9.0]], Ink::Text, solid(2.0));
+        drawing.line(&[[x - 9.0, y], [x + 9.0, y]], Ink::Text, 2.0, &[]);
+        drawing.line(&[[x, y - 9.0], [x, y + 9.0]], Ink::Text, 2.0, &[]);
     }
     if let Some((at, _)) = plot.marks.iter().find(|(_, m)| budget.best == Some(m)) {
-        drawing.circle(*at, 8.0, Ink::Text, Some(solid(1.5)));
+        drawing.circle(*at, 8.0, Ink::Text, Some(1.5));
     }
     let pointed = chart::hover(ui, &response, plot.marks.iter().copied(), |m| {
         format!("{}\n{}, {}", said(&m.setting), milliseconds(m), bound_percent(budget.error(m)))

@@ -84,7 +84,7 @@ pub(crate) fn key(ui: &mut Ui, session: &Session) {
     legend::entry(ui, tr("strains above 10 % or inverted"), BOX, &|ui, rect| {
         let outline = Stroke::new(1.0, ui.visuals().text_color());
         ui.painter().rect_stroke(rect, 0.0, outline, StrokeKind::Inside);
-        plot::hatch(&mut ChartPainter::new(ui, rect.min), [0.0, BOX.x.into()], [0.0, BOX.y.into()], Ink::Text);
+        plot::hatch(&mut ChartPainter::new(ui, rect.min), [[0.0; 2], [BOX.x.into(), BOX.y.into()]], Ink::Text);
     });
 }
 
@@ -284,18 +284,16 @@ impl<'a> StripChart<'a> {
         chart.name(&mut drawing, 33.0, &|name| said(name));
         if let Some((factor, displacement)) = load {
             let (x, [top, _], [left, right]) = (chart.axis().place(factor), chart.curve, chart.across);
-            drawing.line(&[[x, top], [x, chart.bottom()]], Ink::Load, solid(2.0));
+            drawing.line(&[[x, top], [x, chart.bottom()]], Ink::Load, 2.0, &[]);
             // In a low window the strips take the room of the text.
             if chart.strips >= top {
                 let at = [x.clamp(left, right), top - 5.0];
-                let text = load_text(chart.loads, factor);
-                let text = Text::new(at, Anchor::Middle, &text);
-                drawing.put(Text { ink: Ink::Load, ..text });
+                drawing.text(at, Anchor::Middle, Ink::Load, &load_text(chart.loads, factor));
             }
             let y = chart.up().zip(displacement.filter(|u| *u > 0.0)).map(|(up, u)| up.place(u));
             // A body that is far off the reference has no place in the chart.
             if let Some(y) = y.filter(|y| (top..chart.curve[1]).contains(y)) {
-                drawing.circle([x, y], 5.0, Ink::Load, Some(solid(2.0)));
+                drawing.circle([x, y], 5.0, Ink::Load, Some(2.0));
             }
         }
         let name = said(&chart.limits.axis_text(chart.loads));
