@@ -1,14 +1,14 @@
 //! Parallel execution of untimed work on all cores. Timed work must not run at the same time.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use rayon::prelude::*;
 
-use super::progress::{Result, StudyError};
+use super::progress::{Result, StudyError, within};
 use crate::progress::{Observer, Progress};
 use crate::sentence::Sentence;
 
@@ -22,13 +22,12 @@ pub fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
 pub fn all<T: Sync, R: Send>(
     items: &[T],
     observe: Observer<'_>,
-    [from, to]: [f64; 2],
+    shares: [f64; 2],
     now: &Sentence,
     work: impl Fn(&T, Observer<'_>) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
-    let part = |done: usize| done as f64 / items.len() as f64;
     let results = map(items, work, |done| {
-        observe(Progress { fraction: (from + (to - from) * part(done)).min(to), now: Some(now) })
+        observe(within(Progress { fraction: done as f64 / items.len() as f64, now: Some(now) }, shares))
     });
     results.into_iter().map(|result| result.ok_or(StudyError::Cancelled)?).collect()
 }
@@ -53,34 +52,34 @@ pub fn map<T: Sync, R: Send>(
         false => ControlFlow::Continue(()),
     };
     let (sender, receiver) = mpsc::channel();
-    // Splitting the items among cores does not keep their order: each start takes the next one.
-    let next = AtomicUsize::new(0);
-    let one = |sender: &mut mpsc::Sender<()>, _: &T| {
-        let number = next.fetch_add(1, Ordering::Relaxed);
-        let item = items.get(number).filter(|_| !cancelled.load(Ordering::Relaxed));
-        let result = item.map(|item| work(item, &flow));
-        // Sending fails only if the caller panics.
-        let _ = result.as_ref().map(|_| sender.send(()));
-        (number, result)
-    };
+    let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
     std::thread::scope(|scope| {
-        // Items are split one by one, because they are few and long compared with the overhead of a task.
-        let worker = scope.spawn(|| items.par_iter().with_max_len(1).map_with(sender, one).collect());
+        // A bridge keeps the order of the items: each start takes the next one.
+        let bridge = items.iter().enumerate().par_bridge();
+        scope.spawn(|| {
+            bridge.for_each_with(sender, |sender, (number, item)| {
+                if !cancelled.load(Ordering::Relaxed) {
+                    // Sending fails only if the caller panics.
+                    let _ = sender.send((number, work(item, &flow)));
+                }
+            });
+        });
         let mut done = 0;
         loop {
             if observe(done).is_break() {
                 cancelled.store(true, Ordering::Relaxed);
             }
             match receiver.recv_timeout(ASK) {
-                Ok(()) => done += 1,
+                Ok((number, result)) => {
+                    results[number] = Some(result);
+                    done += 1;
+                }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
-        let mut results: Vec<_> = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        results.sort_by_key(|(number, _)| *number);
-        results.into_iter().map(|(_, result)| result).collect()
-    })
+    });
+    results
 }
 
 #[cfg(test)]
@@ -89,20 +88,22 @@ mod tests {
 
     use super::*;
 
+    fn flow(goes_on: bool) -> ControlFlow<()> {
+        if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
     #[test]
     fn results_come_in_order_and_work_is_cancelled() {
         let items: Vec<u32> = (0..1000).collect();
-        let squares = map(&items, |n, _| n * n, |_| ControlFlow::Continue(()));
-        assert!(squares.iter().zip(&items).all(|(square, n)| *square == Some(n * n)));
-        let slow = |n: &u32, _: Observer<'_>| {
+        let square = |n: &u32, _: Observer<'_>| {
             thread::sleep(Duration::from_millis(1));
-            *n
+            n * n
         };
-        let after_ten = |done| if done < 10 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-        let some = map(&items, slow, after_ten);
-        let done = some.iter().flatten().count();
-        assert!(some.len() == items.len() && (10..items.len()).contains(&done), "{done}");
-        assert!(some.iter().zip(&items).all(|(result, n)| result.is_none_or(|result| result == *n)));
+        for (most, finished) in [(items.len() + 1, 1000..=1000), (10, 10..=999)] {
+            let squares = map(&items, square, |done| flow(done < most));
+            assert!(finished.contains(&squares.iter().flatten().count()) && squares.len() == items.len());
+            assert!(squares.iter().zip(&items).all(|(square, n)| square.is_none_or(|square| square == n * n)));
+        }
     }
 
     #[test]
@@ -115,10 +116,7 @@ mod tests {
                 thread::yield_now();
             }
         };
-        let once_begun = |_| match has_begun.load(Ordering::Relaxed) {
-            false => ControlFlow::Continue(()),
-            true => ControlFlow::Break(()),
-        };
-        assert!(map(&[1, 2], until_told, once_begun).iter().flatten().count() > 0);
+        let done = map(&[1, 2], until_told, |_| flow(!has_begun.load(Ordering::Relaxed)));
+        assert!(done.iter().flatten().count() > 0);
     }
 }

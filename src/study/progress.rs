@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::dynamics::StopReason;
 use crate::format::{number, two_digits};
+use crate::progress::Progress;
 use crate::sentence::{Sentence, sentence};
 use crate::simulation::SimulationError;
 
@@ -118,4 +119,9 @@ impl Extent {
 /// Converts [`ControlFlow::Break`] to [`StudyError::Cancelled`].
 pub(super) fn check(flow: ControlFlow<()>) -> Result<()> {
     if flow.is_break() { Err(StudyError::Cancelled) } else { Ok(()) }
+}
+
+/// Returns the progress of a whole whose part, from one fraction to another, has this progress.
+pub(super) fn within(part: Progress<'_>, [from, to]: [f64; 2]) -> Progress<'_> {
+    Progress { fraction: from * (1.0 - part.fraction) + to * part.fraction, ..part }
 }
