@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::scene::{self, Analysis, Probe, Scene};
 use crate::simulation::{Deformation, Simulation, Solution, Status, StressResult};
 use crate::stress::{inversion_warning, strain_warning};
-use crate::study::extremes::{self, Case, Entry, motion, rest};
+use crate::study::extremes::{motion, rest};
 use crate::study::path_chart::Ordinate;
 use crate::study::{
     Claim, Demand, Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathSummary, Reference, Study, StudyError, Tuning,
@@ -283,22 +283,17 @@ pub(super) fn extremes(out: &FolderArgs) -> Result<ExitCode, CliError> {
         let now = format!("{done} of {all} cases").into();
         watch.observe(Progress { fraction: done as f64 / all as f64, now: Some(&now) })
     };
-    let entries = solve_atlas(&cases, observe)?;
-    let motions = solve_atlas(&motion_cases, |done| observe(cases.len() + done))?;
+    let entries = parallel::map(&cases, |case, _| case.solve(), observe);
+    let motions = parallel::map(&motion_cases, |case, _| motion::entry(case), |done| observe(cases.len() + done));
     drop(watch);
-    let missing = all - entries.len() - motions.len();
-    let summary = format!("{}\n{}", rest::summary(&entries), motion::summary(&motions));
-    write_folder(&out.folder, "extremes", &extremes::table(&entries), &plot::atlas(&entries), Some(&summary))?;
-    write_folder(&out.folder, "extremes-motion", &extremes::table(&motions), &plot::atlas(&motions), None)?;
+    let atlas = rest::atlas(entries.into_iter().flatten().collect::<Result<_, _>>()?);
+    let motions = motion::atlas(motions.into_iter().flatten().collect::<Result<_, _>>()?);
+    let missing = all - atlas.entries.len() - motions.entries.len();
+    let summary = format!("{}\n{}", rest::summary(&atlas), motion::summary(&motions));
+    write_folder(&out.folder, "extremes", &atlas.table(), &plot::atlas(&atlas), Some(&summary))?;
+    write_folder(&out.folder, "extremes-motion", &motions.table(), &plot::atlas(&motions), None)?;
     text::print(&summary)?;
     Ok(ended(missing > 0, &format!("{} not in the atlas", count(missing as u64, "case"))))
-}
-
-/// Solves all cases, or until `observe` cancels the rest.
-fn solve_atlas<C: Case>(cases: &[C], observe: impl FnMut(usize) -> ControlFlow<()>) -> Result<Vec<Entry<C>>, CliError> {
-    let solve = |case: &C| case.solve().map_err(|error| format!("{case:?}: {error}").into());
-    let entries = parallel::map(cases, |case, _| solve(case), observe);
-    entries.into_iter().flatten().collect()
 }
 
 fn extent(out: &FolderArgs) -> Extent {

@@ -5,21 +5,12 @@ use crate::common::*;
 use qd::Quad;
 use warpbeam::element::{ElementType, Lame, QuadraturePoint, StrainRate};
 use warpbeam::solver::Factor;
-use warpbeam::study::extremes::rest::{RestCase, Variant};
-use warpbeam::study::extremes::{Case, Entry, Outcome};
+use warpbeam::study::extremes::rest::RestCase;
+use warpbeam::study::extremes::{Entry, Outcome};
 
 /// Returns a cantilever with L/H = 1000 under α = 1e-6.
 fn slender(element: ElementKind, method: MethodKind) -> RestCase {
-    RestCase {
-        element,
-        method,
-        variant: Variant::Plain,
-        alpha: 1e-6,
-        young: 1e6,
-        poisson: 0.3,
-        slenderness: 1e3,
-        aspect: 5.0,
-    }
+    RestCase { element, method, alpha: 1e-6, slenderness: 1e3, aspect: 5.0, ..RestCase::ORDINARY }
 }
 
 /// Solves a case until its residual stops decreasing.

@@ -4,12 +4,10 @@
 pub mod motion;
 pub mod rest;
 
-use std::collections::BTreeMap;
-use std::fmt::Debug;
-
-use crate::dynamics::{Counts, StopReason};
+use crate::dynamics::StopReason;
 use crate::method::Reason;
-use crate::simulation::{Simulation, SimulationError, Solution, Status};
+use crate::scene::ElementKind;
+use crate::simulation::{Simulation, Solution, Status};
 
 /// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +36,6 @@ pub enum Outcome {
 const GAINED: f64 = 0.01;
 
 impl Outcome {
-    /// Number of outcomes of a search for an equilibrium, and of a motion.
-    pub const COUNT: usize = 5;
-
     /// Returns the identifier in tables, and the colour. Colours of one atlas differ in brightness (Okabe and Ito 2008).
     pub(crate) fn entry(self) -> (&'static str, [u8; 3]) {
         match self {
@@ -73,122 +68,99 @@ impl Outcome {
     }
 }
 
-/// Element, and name of the method or integrator.
-pub type AtlasSeries = (&'static str, String);
-
-/// Case of an atlas.
-pub trait Case: Copy + Debug + Send + Sync {
-    /// All outcomes, best first.
-    const OUTCOMES: [Outcome; Outcome::COUNT];
-    /// Heading of the names of methods or integrators.
-    const NAMES: &'static str;
-    /// Quantity that the columns of the picture differ in.
-    const COLUMNS: &'static str;
-    /// Header of the CSV file, without line break.
-    const HEADER: &'static str;
-
-    /// Returns the element and the name of the method or integrator.
-    fn series(&self) -> AtlasSeries;
-
-    /// Returns the labels of the case's row and column in the picture; `None` if the picture does not show the case.
-    fn cell(&self) -> Option<[String; 2]>;
-
-    /// Returns the simulation of the case in its initial state.
-    ///
-    /// # Errors
-    /// [`SimulationError`] if the scene is invalid, which would be a mistake in the atlas.
-    fn simulation(&self) -> Result<Simulation, SimulationError>;
-
-    /// Formats the line of a case in the CSV file, without line break.
-    fn record(entry: &Entry<Self>) -> String;
-
-    /// Solves the case and classifies its outcome.
-    ///
-    /// # Errors
-    /// The errors of [`Self::simulation`].
-    fn solve(self) -> Result<Entry<Self>, SimulationError> {
-        let mut simulation = self.simulation()?;
-        simulation.solve();
-        simulation.certify();
-        let solution = simulation.solution();
-        let length = simulation.scene().beam.as_ref().map_or(simulation.system().size(), |beam| beam.length);
-        let tip = solution.probes.first().map_or([0.0; 2], |probe| [probe.u.x / length, probe.u.y / length]);
-        let motion = simulation.motion().map(|motion| (motion.counts(), motion.ledger().drift()));
-        Ok(Entry { case: self, outcome: Outcome::of(&solution, motion.map(|(_, drift)| drift)), solution, motion, tip })
-    }
-}
-
 /// Case with its outcome.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry<C> {
-    /// Case.
-    pub case: C,
+pub struct Entry {
+    pub(crate) element: ElementKind,
+    /// Name of the method or integrator.
+    pub(crate) name: String,
+    /// Label of the case's row in the picture; `None` if the picture does not show the case.
+    pub(crate) row: Option<String>,
+    /// Label of the case's column.
+    pub(crate) column: String,
+    /// Table of the summary that counts the case, if any.
+    group: Option<&'static str>,
+    /// Line of the CSV file, without line break.
+    record: String,
     /// Outcome.
     pub outcome: Outcome,
     /// Results of the last finite state.
     pub solution: Solution,
-    /// Counts and energy drift of a motion.
-    pub motion: Option<(Counts, f64)>,
-    /// Displacement of a beam's tip over the length, or of a mesh file's first probe over the size.
-    pub tip: [f64; 2],
 }
 
-/// Formats an atlas as CSV.
-pub fn table<C: Case>(entries: &[Entry<C>]) -> String {
-    let lines = std::iter::once(C::HEADER.to_owned()).chain(entries.iter().map(C::record));
-    lines.map(|line| line + "\n").collect()
+/// Cases with their outcomes, at rest or in motion.
+#[derive(Debug)]
+pub struct Atlas {
+    /// All outcomes, best first.
+    pub(crate) outcomes: &'static [Outcome],
+    /// Heading of the names of methods or integrators.
+    names: &'static str,
+    /// Quantity that the columns of the picture differ in.
+    pub(crate) columns: &'static str,
+    /// Header of the CSV file, without line break.
+    header: &'static str,
+    /// Cases.
+    pub entries: Vec<Entry>,
 }
 
-/// Counts the outcomes of the cases with the same key, in the order of [`Case::OUTCOMES`]. Cases with key `None` are
-/// not counted.
-pub(crate) fn counts<C: Case, K: Ord>(
-    entries: &[Entry<C>],
-    key: impl Fn(&C) -> Option<K>,
-) -> BTreeMap<K, [usize; Outcome::COUNT]> {
-    let mut counts: BTreeMap<K, [usize; Outcome::COUNT]> = BTreeMap::new();
-    for entry in entries {
-        let Some(key) = key(&entry.case) else { continue };
-        for (count, outcome) in counts.entry(key).or_default().iter_mut().zip(C::OUTCOMES) {
-            *count += usize::from(outcome == entry.outcome);
-        }
+impl Atlas {
+    /// Formats the atlas as CSV.
+    pub fn table(&self) -> String {
+        let records = self.entries.iter().map(|entry| entry.record.as_str());
+        std::iter::once(self.header).chain(records).map(|line| format!("{line}\n")).collect()
     }
-    counts
-}
 
-/// Returns the distinct labels of cases, in the order in which they first appear. Labels `None` are left out.
-pub(crate) fn labels<C, L: PartialEq>(entries: &[Entry<C>], label: impl Fn(&C) -> Option<L>) -> Vec<L> {
-    let mut labels = Vec::new();
-    for label in entries.iter().filter_map(|entry| label(&entry.case)) {
-        if !labels.contains(&label) {
-            labels.push(label);
-        }
+    /// Returns the cases of an element and a method or integrator.
+    pub(crate) fn of(&self, element: ElementKind, name: &str) -> Vec<&Entry> {
+        self.entries.iter().filter(|entry| entry.element == element && entry.name == name).collect()
     }
-    labels
+
+    /// Formats the counts of outcomes as text.
+    fn outcome_table(&self) -> String {
+        let columns: Vec<_> = self.outcomes.iter().map(|outcome| outcome.entry().0.to_owned()).collect();
+        self.text_table(&columns, 14, |entries, id| {
+            entries.iter().filter(|entry| entry.outcome.entry().0 == id).count() as f64
+        })
+    }
+
+    /// Formats a table as text, with columns of this width, and a row for the cases of every element and method or integrator
+    /// that have a value, which is not NaN.
+    fn text_table(&self, columns: &[String], width: usize, value: impl Fn(&[&Entry], &str) -> f64) -> String {
+        let series = distinct(self.entries.iter().map(|entry| (entry.element, &entry.name)));
+        let name_width = series.iter().map(|(_, name)| name.len()).max().unwrap_or(0).max(7);
+        let heading: String = columns.iter().map(|column| format!(" {column:>width$}")).collect();
+        let mut text = format!("{:<7} {:<name_width$}{heading}\n", "element", self.names);
+        for (element, name) in series {
+            let own = self.of(element, name);
+            let values: Vec<f64> = columns.iter().map(|column| value(&own, column)).collect();
+            if !values.iter().all(|value| value.is_nan()) {
+                let texts = values.iter().map(|v| if v.is_nan() { "–".to_owned() } else { format!("{v:.0}") });
+                let cells: String = texts.map(|text| format!(" {text:>width$}")).collect();
+                text += &format!("{:<7} {name:<name_width$}{cells}\n", element.id());
+            }
+        }
+        text
+    }
 }
 
-/// Formats the counts of outcomes as text, with a row for each of these series.
-fn outcome_table<C: Case>(entries: &[Entry<C>], series: &[AtlasSeries]) -> String {
-    let counts = counts(entries, |case| Some(case.series()));
-    let columns = C::OUTCOMES.map(|outcome| outcome.entry().0.to_owned());
-    text_table::<C>(series, &columns, 14, |series, column| Some(counts.get(series)?[column].to_string()))
+/// Returns the distinct values, in the order in which they first appear.
+pub(crate) fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    values.fold(Vec::new(), |mut distinct, value| {
+        if !distinct.contains(&value) {
+            distinct.push(value);
+        }
+        distinct
+    })
 }
 
-/// Formats a table as text, with a row for each series that has a cell, and columns of this width.
-fn text_table<C: Case>(
-    series: &[AtlasSeries],
-    columns: &[String],
-    width: usize,
-    cell: impl Fn(&AtlasSeries, usize) -> Option<String>,
-) -> String {
-    let name_width = series.iter().map(|(_, name)| name.len()).max().unwrap_or(0).max(7);
-    let line = |element: &str, name: &str, cells: Vec<String>| {
-        let cells: String = cells.iter().map(|cell| format!(" {cell:>width$}")).collect();
-        format!("{element:<7} {name:<name_width$}{cells}\n")
-    };
-    let rows = series.iter().filter_map(|series| {
-        let cells: Vec<_> = (0..columns.len()).map(|column| cell(series, column)).collect();
-        let texts = || cells.iter().map(|cell| cell.clone().unwrap_or_else(|| "–".to_owned())).collect();
-        cells.iter().any(Option::is_some).then(|| line(series.0, &series.1, texts()))
-    });
-    line("element", C::NAMES, columns.to_vec()) + &rows.collect::<String>()
+/// Solves a case; returns its outcome, its result, and the displacement of a beam's tip over the length, or of a mesh file's
+/// first probe over the size.
+fn solve(simulation: &mut Simulation) -> (Outcome, Solution, [f64; 2]) {
+    simulation.solve();
+    simulation.certify();
+    let solution = simulation.solution();
+    let length = simulation.scene().beam.as_ref().map_or(simulation.system().size(), |beam| beam.length);
+    let tip = solution.probes.first().map_or([0.0; 2], |probe| [probe.u.x / length, probe.u.y / length]);
+    let drift = simulation.motion().map(|motion| motion.ledger().drift());
+    (Outcome::of(&solution, drift), solution, tip)
 }

@@ -1,34 +1,16 @@
 //! Stability atlas of bodies at rest: every method at extremes of load, stiffness, Poisson ratio, slenderness and
 //! element shape, on mesh files, and from extreme initial states.
 
-use super::{AtlasSeries, Case, Entry, Outcome, counts, labels, outcome_table, text_table};
+use super::{Atlas, Entry, Outcome, distinct, solve};
 use crate::rotation::Rotation;
 use crate::scene::{Axis, Material, Plane, Source, open};
-use crate::simulation::Solution;
 use crate::study::prelude::*;
-
-/// Difference from a cantilever with rectangular cells that starts at rest and is loaded at its tip. Fixed nodes always
-/// start at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Variant {
-    /// No difference.
-    Plain,
-    /// The tip is moved transversely instead of loaded: by the deflection of linear beam theory under the load, α/3 of
-    /// the length, but at most 0.8 of it.
-    MovedTip,
-    /// The initial state is the one with this index in [`STARTS`].
-    Start(usize),
-    /// Nodes are displaced along the beam, with alternating sign, by this fraction of the cell length.
-    Distorted(f64),
-    /// Built-in scene with a mesh file instead of the cantilever, by its name.
-    File(&'static str),
-}
 
 /// Returns the initial position of a node with this index and rest position, for a beam of height 1 m.
 type StartPosition = fn(usize, Vector2<f64>) -> Vector2<f64>;
 
 /// Initial states other than rest, with their identifiers in tables.
-pub const STARTS: [(&str, StartPosition); 4] = [
+const STARTS: [(&str, StartPosition); 4] = [
     // Every node on the axis: all elements without area.
     ("flat", |_, x| Vector2::new(x.x, 0.0)),
     // Mirrored at the axis: all elements inverted.
@@ -49,8 +31,8 @@ pub struct RestCase {
     pub element: ElementKind,
     /// Method.
     pub method: MethodKind,
-    /// Difference from a cantilever with rectangular cells that starts at rest.
-    pub variant: Variant,
+    /// Initial state; fixed nodes always start at rest.
+    pub start: &'static str,
     /// Transverse tip load α = P L²/EI; for a mesh file, the factor of the scene's loads.
     pub alpha: f64,
     /// Young's modulus, Pa.
@@ -61,46 +43,48 @@ pub struct RestCase {
     pub slenderness: f64,
     /// Requested length over height of a cell.
     pub aspect: f64,
+    /// `true` if the tip is moved transversely instead of loaded: by the deflection of linear beam theory under the load,
+    /// α/3 of the length, but at most 0.8 of it.
+    pub moved: bool,
+    /// Fraction of the cell length by which nodes are displaced along the beam, with alternating sign.
+    pub distortion: f64,
+    /// Built-in scene with a mesh file instead of the cantilever, by its name.
+    pub mesh: Option<&'static str>,
 }
 
 /// Returns all cases, a few hundred or many thousand: a grid of loads and shapes from rest, all initial states,
 /// distorted cells, and scenes with mesh files.
 pub fn cases(extent: Extent) -> Vec<RestCase> {
-    let pick = |quick: &'static [f64], all: &'static [f64]| if extent == Extent::Full { all } else { quick };
-    let alphas = pick(&[0.1, 10.0, 1e3], &[1e-6, 1e-2, 0.1, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e6]);
-    let youngs = pick(&[1e6], &[1e-3, 1e6, 1e10]);
-    let poissons = pick(&[0.0, 0.4999], &[0.0, 0.3, 0.49, 0.4999]);
-    let slendernesses = pick(&[1.0, 20.0, 1e3], &[1.0, 5.0, 20.0, 100.0, 1e3]);
-    let aspects = pick(&[2.0], &[1.0, 5.0, 50.0]);
-    let distortions = pick(&[0.45], &[0.3, 0.45]);
-    let distorted_slendernesses = pick(&[20.0], &[5.0, 20.0, 100.0]);
+    let pick = |values: [&'static [f64]; 2]| extent.pick(values);
+    let alphas = pick([&[0.1, 10.0, 1e3], &[1e-6, 1e-2, 0.1, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e6]]);
+    let youngs = pick([&[], &[1e-3, 1e10]]);
+    let poissons = pick([&[0.0, 0.4999], &[0.0, 0.3, 0.49, 0.4999]]);
+    let slendernesses = pick([&[1.0, 20.0, 1e3], &[1.0, 5.0, 20.0, 100.0, 1e3]]);
+    let aspects = pick([&[2.0], &[1.0, 5.0, 50.0]]);
+    let distortions = pick([&[0.45], &[0.3, 0.45]]);
+    let distorted_slendernesses = pick([&[20.0], &[5.0, 20.0, 100.0]]);
+    let files = ["bracket", "clip", "cook"].into_iter().filter_map(|id| Some((id, built_in(id)?)));
     let mut cases = Vec::new();
     for (element, method) in ElementKind::all().flat_map(|e| METHODS.iter().map(move |m| (e, m.kind))) {
+        let is_possible = |(_, scene): &(&str, Scene)| scene.elements().any(|own| own == element);
         for &alpha in alphas {
-            let ordinary = RestCase {
-                element,
-                method,
-                variant: Variant::Plain,
-                alpha,
-                young: 1e6,
-                poisson: 0.3,
-                slenderness: 20.0,
-                aspect: 2.0,
-            };
+            let ordinary = RestCase { element, method, alpha, ..RestCase::ORDINARY };
             for &slenderness in slendernesses {
                 for &poisson in poissons {
                     cases.extend(aspects.iter().map(|&aspect| RestCase { slenderness, poisson, aspect, ..ordinary }));
                 }
-                cases.push(RestCase { slenderness, variant: Variant::MovedTip, ..ordinary });
-                let others = youngs.iter().filter(|&&young| young != ordinary.young);
-                cases.extend(others.map(|&young| RestCase { slenderness, young, ..ordinary }));
+                cases.push(RestCase { slenderness, moved: true, ..ordinary });
+                cases.extend(youngs.iter().map(|&young| RestCase { slenderness, young, ..ordinary }));
             }
-            cases.extend((0..STARTS.len()).map(|start| RestCase { variant: Variant::Start(start), ..ordinary }));
-            for variant in distortions.iter().map(|&distortion| Variant::Distorted(distortion)) {
+            cases.extend(STARTS.map(|(start, _)| RestCase { start, ..ordinary }));
+            for &distortion in distortions {
                 let shapes = distorted_slendernesses.iter();
-                cases.extend(shapes.map(|&slenderness| RestCase { slenderness, variant, ..ordinary }));
+                cases.extend(shapes.map(|&slenderness| RestCase { slenderness, distortion, ..ordinary }));
             }
-            cases.extend(["bracket", "clip", "cook"].into_iter().filter_map(|id| ordinary.on_file(id)));
+            for (mesh, Scene { material: Material { young, poisson, .. }, .. }) in files.clone().filter(is_possible) {
+                let mesh = Some(mesh);
+                cases.push(RestCase { mesh, young, poisson, slenderness: 1.0, aspect: 1.0, ..ordinary });
+            }
         }
     }
     cases
@@ -111,19 +95,24 @@ fn built_in(id: &str) -> Option<Scene> {
 }
 
 impl RestCase {
-    /// Returns the case on a mesh file; `None` if the file has no such elements.
-    fn on_file(self, id: &'static str) -> Option<Self> {
-        let scene = built_in(id)?;
-        let Material { young, poisson, .. } = scene.material;
-        let case = Self { variant: Variant::File(id), young, poisson, slenderness: 1.0, aspect: 1.0, ..self };
-        scene.elements().any(|e| e == self.element).then_some(case)
-    }
+    /// Cantilever with rectangular cells that starts at rest and is loaded at its tip.
+    pub const ORDINARY: Self = Self {
+        element: ElementKind::T3,
+        method: MethodKind::Newton,
+        start: "rest",
+        alpha: 1.0,
+        young: 1e6,
+        poisson: 0.3,
+        slenderness: 20.0,
+        aspect: 2.0,
+        moved: false,
+        distortion: 0.0,
+        mesh: None,
+    };
 
     /// Returns the scene of the case.
     pub fn scene(&self) -> Scene {
-        if let Variant::File(id) = self.variant
-            && let Some(mut scene) = built_in(id)
-        {
+        if let Some(mut scene) = self.mesh.and_then(built_in) {
             scene.set_element(self.element);
             scene.scale_loads(self.alpha);
             scene.solver.method = self.method;
@@ -140,65 +129,56 @@ impl RestCase {
             .with_method(self.method)
             .clamp("left")
             .probe("tip", "right");
-        if self.variant == Variant::MovedTip {
+        if self.moved {
             scene.support([length, 0.0], &[Axis::Y]).moved([0.0, -length * (self.alpha / 3.0).min(0.8)], 0.0)
         } else {
             scene.force("right", [0.0, -self.alpha * self.young / 12.0 / (length * length)])
         }
     }
-}
 
-impl Case for RestCase {
-    const OUTCOMES: [Outcome; Outcome::COUNT] =
-        [Outcome::Certified, Outcome::Converged, Outcome::Inverted, Outcome::Stalled, Outcome::NotConverged];
-    const NAMES: &'static str = "method";
-    const COLUMNS: &'static str = "load α = P L²/EI";
-    const HEADER: &'static str = "element,method,start,alpha,young,poisson,length_over_height,cell_aspect,outcome,iterations,residual,tip_x_over_l,tip_y_over_l,moved,distortion,mesh,residual_floor";
-
-    fn series(&self) -> AtlasSeries {
-        (self.element.id(), self.method.id().to_owned())
-    }
-
-    fn cell(&self) -> Option<[String; 2]> {
-        let row = match self.variant {
-            Variant::Plain => format!("L/H {}", self.slenderness),
-            Variant::MovedTip => return None,
-            Variant::Start(start) => STARTS[start].0.to_owned(),
-            Variant::Distorted(distortion) => format!("distorted {distortion}"),
-            Variant::File(id) => id.to_owned(),
-        };
-        Some([row, number(self.alpha)])
-    }
-
+    /// Returns the simulation of the case in its initial state.
     fn simulation(&self) -> Result<Simulation, SimulationError> {
         let scene = self.scene();
-        if let Variant::Distorted(distortion) = self.variant
-            && let Some(mesh) = distorted(&scene, distortion)
+        if self.distortion > 0.0
+            && let Some(mesh) = distorted(&scene, self.distortion)
         {
             return Simulation::with_mesh(&scene, mesh);
         }
         let mut simulation = Simulation::new(&scene)?;
-        if let Variant::Start(start) = self.variant {
+        if let Some((_, place)) = STARTS.iter().find(|(id, _)| *id == self.start) {
             let nodes = simulation.system().mesh().nodes().iter().enumerate();
-            let u: Vec<_> = nodes.map(|(node, x)| STARTS[start].1(node, *x) - x).collect();
+            let u: Vec<_> = nodes.map(|(node, x)| place(node, *x) - x).collect();
             // Cannot fail: one vector per node, all finite.
             let _ = simulation.start_from(&u);
         }
         Ok(simulation)
     }
 
-    fn record(Entry { case, outcome, solution, tip: [x, y], .. }: &Entry<Self>) -> String {
-        let RestCase { variant, alpha, young, poisson, slenderness, aspect, .. } = *case;
-        let (element, method, outcome) = (case.element.id(), case.method.id(), outcome.entry().0);
-        let Solution { iterations, residual, residual_floor, .. } = *solution;
-        let start = if let Variant::Start(start) = variant { STARTS[start].0 } else { "rest" };
-        let moved = variant == Variant::MovedTip;
-        let distortion = if let Variant::Distorted(distortion) = variant { distortion } else { 0.0 };
-        let mesh = if let Variant::File(id) = variant { id } else { "beam" };
-        let floor = residual_floor.map_or_else(String::new, |floor| format!("{floor:e}"));
-        format!(
-            "{element},{method},{start},{alpha},{young},{poisson},{slenderness},{aspect},{outcome},{iterations},{residual:e},{x},{y},{moved},{distortion},{mesh},{floor}"
-        )
+    /// Solves the case and classifies its outcome.
+    pub fn solve(&self) -> Result<Entry, SimulationError> {
+        let (outcome, solution, [x, y]) = solve(&mut self.simulation()?);
+        let Self { start, alpha, young, poisson, slenderness, aspect, moved, distortion, mesh, .. } = *self;
+        let (row, group) = match mesh {
+            Some(id) => (Some(id.to_owned()), Some("mesh files, by their scenes' load times")),
+            None if moved => {
+                (None, Some("cases from rest, by the displacement of the moved tip, α/3 of the length, at most 0.8"))
+            }
+            None if start != Self::ORDINARY.start => (Some(start.to_owned()), None),
+            None if distortion > 0.0 => {
+                (Some(format!("distorted {distortion}")), Some("cases with distorted cells, by load α = P L²/EI"))
+            }
+            None => (Some(format!("L/H {slenderness}")), Some("cases from rest, by load α = P L²/EI")),
+        };
+        let (element, method, mesh) = (self.element, self.method.id(), mesh.unwrap_or("beam"));
+        let floor = solution.residual_floor.map_or_else(String::new, |floor| format!("{floor:e}"));
+        let record = format!(
+            "{},{method},{start},{alpha},{young},{poisson},{slenderness},{aspect},{},{},{:e},{x},{y},{moved},{distortion},{mesh},{floor}",
+            element.id(),
+            outcome.entry().0,
+            solution.iterations,
+            solution.residual
+        );
+        Ok(Entry { element, name: method.to_owned(), row, column: number(alpha), group, record, outcome, solution })
     }
 }
 
@@ -226,37 +206,34 @@ fn distorted(scene: &Scene, distortion: f64) -> Option<Mesh> {
     Mesh::new(nodes, mesh.element(), mesh.connectivity().to_vec(), mesh.edges().clone()).ok()
 }
 
+/// Returns the atlas of the entries.
+pub fn atlas(entries: Vec<Entry>) -> Atlas {
+    Atlas {
+        outcomes: &[Outcome::Certified, Outcome::Converged, Outcome::Inverted, Outcome::Stalled, Outcome::NotConverged],
+        names: "method",
+        columns: "load α = P L²/EI",
+        header: "element,method,start,alpha,young,poisson,length_over_height,cell_aspect,outcome,iterations,residual,tip_x_over_l,tip_y_over_l,moved,distortion,mesh,residual_floor",
+        entries,
+    }
+}
+
 /// Formats the counts for display, and where each method stops converging.
-pub fn summary(entries: &[Entry<RestCase>]) -> String {
-    let series = labels(entries, |case| Some(case.series()));
-    let alphas = labels(entries, |case| Some(number(case.alpha)));
-    let mut by_name = series.clone();
-    by_name.sort();
-    let at_rounding = entries.iter().filter(|entry| entry.solution.residual_floor.is_some()).count();
+pub fn summary(atlas: &Atlas) -> String {
+    let at_rounding = atlas.entries.iter().filter(|entry| entry.solution.residual_floor.is_some()).count();
     let mut text = format!(
         "{} cases, beams in plane strain\n\n{}\n{at_rounding} of the converged cases stopped at working precision: \
          residual above the tolerance, within the bound of rounding\n",
-        entries.len(),
-        outcome_table(entries, &by_name)
+        atlas.entries.len(),
+        atlas.outcome_table()
     );
-    let group = |case: &RestCase| match case.variant {
-        Variant::Plain => Some("cases from rest, by load α = P L²/EI"),
-        Variant::MovedTip => {
-            Some("cases from rest, by the displacement of the moved tip, α/3 of the length, at most 0.8")
-        }
-        Variant::Start(_) => None,
-        Variant::Distorted(_) => Some("cases with distorted cells, by load α = P L²/EI"),
-        Variant::File(_) => Some("mesh files, by their scenes' load times"),
-    };
-    let counts = counts(entries, |case| Some((group(case)?, case.series(), number(case.alpha))));
-    for cases in labels(entries, group) {
-        let percent = |series: &AtlasSeries, column: usize| {
-            let row = counts.get(&(cases, series.clone(), alphas[column].clone()))?;
-            let [certified, converged, ..] = *row;
-            Some(format!("{:.0}", 100.0 * (certified + converged) as f64 / row.iter().sum::<usize>() as f64))
-        };
-        text += &format!("\ncertified or converged, percent of the {cases}\n");
-        text += &text_table::<RestCase>(&series, &alphas, 6, percent);
+    let alphas = distinct(atlas.entries.iter().map(|entry| entry.column.clone()));
+    for group in distinct(atlas.entries.iter().filter_map(|entry| entry.group)) {
+        text += &format!("\ncertified or converged, percent of the {group}\n");
+        text += &atlas.text_table(&alphas, 6, |entries, alpha| {
+            let own = entries.iter().filter(|e| e.group == Some(group) && e.column == alpha);
+            let good = own.clone().filter(|e| matches!(e.outcome, Outcome::Certified | Outcome::Converged)).count();
+            100.0 * good as f64 / own.count() as f64
+        });
     }
     text
 }
