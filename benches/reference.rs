@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use warpbeam::Simulation;
 use warpbeam::format;
 use warpbeam::scene::{Analysis, Source, open, registry};
-use warpbeam::study::motion::MotionReference;
+use warpbeam::study::StudyReference;
 use warpbeam::study::{Extent, Reference, StudyError};
 
 /// Number of timed rounds; the median is printed.
@@ -30,11 +30,8 @@ fn main() {
         let start = Instant::now();
         let go_on = &|_: warpbeam::Progress<'_>| ControlFlow::Continue(());
         let (source, own_error) = match scene.analysis {
-            Analysis::Dynamic => match MotionReference::new(&scene, Extent::Quick, go_on) {
-                Ok(found) => {
-                    let step = format::engineering(found.time_step, "s");
-                    (format!("{} with steps of {step}", found.element.id()), Some(found.error_percent))
-                }
+            Analysis::Dynamic => match StudyReference::new(&scene, Extent::Quick, go_on) {
+                Ok(found) => (found.text.to_string(), Some(found.error_percent)),
                 Err(error) => (error.to_string(), None),
             },
             _ => match Reference::find(&scene, Some(&simulation), Extent::Quick, go_on) {

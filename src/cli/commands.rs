@@ -263,7 +263,7 @@ pub(super) fn tune(args: TuneArgs) -> Result<ExitCode, CliError> {
 
 /// Returns the scene with the chosen setting, to be written to `path`.
 fn tuned(scene: &Scene, tuning: &Tuning, source: &scene::Source, path: &Path) -> Scene {
-    let mut tuned = tuning.chosen.apply(scene);
+    let mut tuned = tuning.chosen.applied().apply(scene);
     if let (Some(mesh), false) = (&mut tuned.mesh, source.built_in().is_some()) {
         // The mesh path is relative to the scene file, which changes. The folder of a bare file name is the current
         // one.

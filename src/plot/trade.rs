@@ -7,8 +7,7 @@ use crate::format::number;
 use crate::method::METHODS;
 use crate::scene::{ElementKind, MethodKind};
 use crate::study::figure::Ink;
-use crate::study::motion::REAL_TIME;
-use crate::study::{Measurement, Study, StudyReference};
+use crate::study::{Measurement, Study};
 
 /// Errors below this are drawn at it: they are rounding, or chance.
 pub(crate) const SMALLEST_ERROR: f64 = 1e-3;
@@ -19,8 +18,8 @@ const DASHES: &[f64] = &[6.0, 4.0];
 
 /// Draws the error of a study over its time. Each colour of the key is shown with every element.
 pub fn study(study: &Study) -> Drawing {
-    let moves = matches!(study.reference, StudyReference::Motion(_));
-    let real_time = moves.then_some(REAL_TIME);
+    let moves = study.moves();
+    let real_time = moves.then_some(1e3); // ms per simulated second
     let (title, names) = if moves {
         (
             "error of its path against time",

@@ -1,26 +1,43 @@
-//! Measurement of the settings of a body at rest. A solve starts from rest, which is the hardest case; data computed once
-//! per mesh (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
+//! Measurement of every setting of a scene. A solve starts from rest, which is the hardest case; data computed once per mesh
+//! (sparsity, ordering, the factor of the stiffness at rest that `auto` keeps) already exist.
 
 use super::fine::finest_element;
-use super::motion::{self, MotionReference};
+use super::motion;
 use super::prelude::*;
-use super::reference::{Reference, first_probe};
+use super::reference::{Reference, first_probe, system_of};
 use super::timing::times_from_rest;
 use super::trade::{Measurement, Meshed, Study, StudyReference};
 
-/// Fraction of a study's time spent before timing starts.
-const ENDS_SHARE: f64 = 0.1;
+/// Approximate fraction of a study's time when the reference solution is known.
+const REFERENCE_SHARE: f64 = 0.1;
 /// Numbers of iterations that are recorded.
 const ITERATIONS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, Study::MAX_ITERATIONS];
+
+impl StudyReference {
+    /// Computes the reference of a study of a scene.
+    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+        if scene.analysis == Analysis::Dynamic {
+            return Self::of_motion(scene, extent, observe);
+        }
+        let reference = Reference::find(scene, None, Extent::Quick, observe)?;
+        let first = reference.first().ok_or(StudyError::NoBound)?;
+        Ok(Self {
+            path: vec![first.displacement],
+            size: first.displacement.norm(),
+            error_percent: first.own_error_percent,
+            samples: motion::Samples { interval: 0.0, count: 1 },
+            scene_duration: 0.0,
+            text: (&reference).into(),
+        })
+    }
+}
 
 impl Study {
     /// Measures a scene. `observe` receives the progress, and breaks to cancel: the study then has the measurements so far.
     ///
     /// ```
     /// use std::ops::ControlFlow;
-    /// use warpbeam::{
-    ///     Demand, ErrorSplit, Extent, Measurement, Observer, Progress, Scene, Sentence, Setting, Study, StudyError,
-    /// };
+    /// use warpbeam::{Demand, Extent, Observer, Progress, Scene, Sentence, Study, StudyError};
     ///
     /// let scene = Scene::beam(10.0, 1.0).clamp("left").force("right", [0.0, -500.0]).probe("tip", "right");
     /// let observe: Observer<'_> = &|Progress { fraction, now }| {
@@ -29,13 +46,8 @@ impl Study {
     /// };
     /// let study = Study::new(&scene, Extent::Quick, observe)?;
     /// let demand = Demand { max_error_percent: Some(5.0), max_time_ms: Some(100.0) };
-    /// for Measurement { setting, error, .. } in study.meeting(demand) {
-    ///     let (Setting { iterations, .. }, Some(ErrorSplit { discretization, iteration, model, .. })) = (setting, error)
-    ///     else {
-    ///         continue;
-    ///     };
-    ///     println!("{setting}: mesh {discretization} %, stopped after {iterations}: {iteration} %, theory {model} %");
-    ///     assert!(discretization + iteration + model <= 5.0);
+    /// for m in study.meeting(demand) {
+    ///     println!("{}: {} ms, error at most {} %", m.setting, m.milliseconds, study.error_bound(m));
     /// }
     /// # Ok::<(), StudyError>(())
     /// ```
@@ -57,56 +69,91 @@ impl Study {
         partial: &mut dyn FnMut(&Self),
     ) -> Result<Self, StudyError> {
         let moves = scene.analysis == Analysis::Dynamic;
-        // Fractions of the time when the reference is known, and when the timing starts.
-        let (known, begun) = if moves { motion::SHARES } else { (0.0, ENDS_SHARE) };
-        let (meshes, study) = {
-            let observe =
-                &|progress: Progress<'_>| observe(Progress { fraction: known * progress.fraction, ..progress });
-            match moves {
-                true => {
-                    let reference = StudyReference::Motion(MotionReference::new(scene, extent, observe)?);
-                    (motion::meshes(scene, extent), Self::begin(scene, reference)?)
-                }
-                false => (meshes(scene, extent), begin(scene, observe)?),
-            }
-        };
-        // Run the untimed part first on all cores, so that the timed part runs alone on the machine.
-        let now = if moves { sentence!("the motion on every mesh") } else { sentence!("end state of every method") };
-        let meshed =
-            parallel::all(&meshes, observe, [known, begun], &now, |(mesh, _), observe| match &study.reference {
-                StudyReference::Rest(_) => meshed(scene, *mesh, observe),
-                StudyReference::Motion(reference) => Meshed::new(scene, *mesh, |scene, system| {
-                    let steps = extent.pick(motion::REFERENCE_STEPS);
-                    motion::fine_path(scene, system, reference.samples(), steps, observe)
-                }),
-            })?;
-        let mut order: Vec<_> = meshed.iter().zip(meshes.iter().map(|(_, weight)| *weight)).collect();
+        let mut meshes = if moves { motion::meshes(scene, extent) } else { meshes(scene, extent) };
         // At rest, start with the element that converges fastest, which is likely to give the best results.
-        order.sort_by_key(|(meshed, _)| !moves && meshed.mesh.element != finest_element(scene));
-        study.measure_meshes(begun, &order, observe, partial, |study, meshed, observe| {
-            match moves {
-                true => motion::measure(study, scene, extent, meshed, observe)?,
-                false => measure(study, scene, meshed, observe)?,
-            }
-            study.measurements.sort_by_key(|m| {
-                let of = |mesh: &Setting| (mesh.element, mesh.cells) == (m.setting.element, m.setting.cells);
-                meshes.iter().position(|(mesh, _)| of(mesh))
-            });
-            Ok(())
+        meshes.sort_by_key(|(mesh, _)| !moves && mesh.element != finest_element(scene));
+        Self::begin(scene, extent, observe)?.measure(scene, extent, &meshes, observe, &mut |study, _| {
+            partial(study);
+            f64::INFINITY
         })
+    }
+
+    /// Returns the study of a scene with its reference solution and no measurements.
+    pub(super) fn begin(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self> {
+        let observe: Observer<'_> = &|progress| observe(within(progress, [0.0, REFERENCE_SHARE]));
+        let reference = StudyReference::new(scene, extent, observe)?;
+        let (own_error_percent, asked_percent) = (reference.error_percent, scene.solver.max_error_percent);
+        let (scene, measurements) = (scene.name.clone(), Vec::new());
+        Ok(Self { scene, reference, own_error_percent, asked_percent, measurements, is_partial: true })
+    }
+
+    /// Measures every setting on each mesh, which has an approximate cost. `after` receives the study when a mesh is done, and
+    /// returns the cost of meshes above which no mesh is measured any more. A cancelled study keeps its measurements.
+    pub(super) fn measure(
+        mut self,
+        scene: &Scene,
+        extent: Extent,
+        meshes: &[(Setting, f64)],
+        observe: Observer<'_>,
+        after: &mut dyn FnMut(&Self, &(Setting, f64)) -> f64,
+    ) -> Result<Self> {
+        let all: f64 = meshes.iter().map(|(_, cost)| cost).sum();
+        let (mut done, mut most) = (0.0, f64::INFINITY);
+        for mesh in meshes {
+            if mesh.1 > most {
+                break;
+            }
+            let share = |done: f64| REFERENCE_SHARE + (1.0 - REFERENCE_SHARE) * (done / all);
+            let shares = [share(done), share(done + mesh.1)];
+            let measured = self.measure_on(mesh.0, scene, extent, &|progress| observe(within(progress, shares)));
+            let place = |m: &Measurement| scene.elements().position(|element| element == m.setting.element);
+            self.measurements.sort_by_key(place);
+            self.rank();
+            match measured {
+                Err(StudyError::Cancelled) if !self.measurements.is_empty() => return Ok(self),
+                measured => measured?,
+            }
+            most = most.min(after(&self, mesh));
+            // A cancellation is seen by the next mesh.
+            let _ = observe(Progress::at(shares[1]));
+            done += mesh.1;
+        }
+        self.is_partial = false;
+        Ok(self)
+    }
+
+    /// Measures every setting on a mesh. A cancelled measurement keeps its results. The untimed part, the results of both
+    /// theories, runs first on all cores, so that the timed part runs alone on the machine.
+    fn measure_on(&mut self, mesh: Setting, scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<()> {
+        let (scene, reference, moves) = (mesh.apply(scene), &self.reference, self.moves());
+        let (system, steps) = (system_of(&scene)?, extent.pick(motion::REFERENCE_STEPS));
+        let now = sentence!("%{mesh}, linear and corotated theory", mesh = mesh_text(mesh.element, mesh.cells));
+        let theories = [MethodKind::Newton, MethodKind::Linear];
+        let theories = parallel::all(&theories, observe, [0.0; 2], &now, |&method, observe| {
+            let mut scene = scene.clone().with_method(method);
+            if moves {
+                return motion::fine_path(scene, &system, reference.samples, steps, observe);
+            }
+            scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
+            let mut simulation = Simulation::with_system(&scene, system.clone())?;
+            check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
+            match *simulation.status() != Status::Converged && method == MethodKind::Newton {
+                true => Err(StudyError::NoReference),
+                false => Ok(vec![first_probe(&simulation)?]),
+            }
+        })?;
+        let meshed = Meshed { mesh, scene, system, reference, theories };
+        match moves {
+            true => motion::measure(&meshed, extent, observe, &mut self.measurements),
+            false => measure_at_rest(&meshed, observe, &mut self.measurements),
+        }
     }
 }
 
-/// Returns a study of a scene at rest with its reference solution and no measurements.
-pub(super) fn begin(scene: &Scene, observe: Observer<'_>) -> Result<Study> {
-    Study::begin(scene, StudyReference::Rest(Reference::find(scene, None, Extent::Quick, observe)?))
-}
-
-/// Measures every method on a mesh. A cancelled measurement leaves the study unchanged.
-pub(super) fn measure(study: &mut Study, scene: &Scene, meshed: &Meshed, observe: Observer<'_>) -> Result<()> {
-    let Meshed { mesh, system, .. } = meshed;
+/// Measures every method on a mesh.
+fn measure_at_rest(meshed: &Meshed<'_>, observe: Observer<'_>, measurements: &mut Vec<Measurement>) -> Result<()> {
+    let Meshed { mesh, scene, system, .. } = meshed;
     let text = mesh_text(mesh.element, mesh.cells);
-    let mut measurements = Vec::new();
     for (number, method) in METHODS.iter().map(|m| m.kind).enumerate() {
         let now = sentence!("%{mesh}, %{method}", mesh = &text, method = method.id());
         let fraction = number as f64 / METHODS.len() as f64;
@@ -116,42 +163,23 @@ pub(super) fn measure(study: &mut Study, scene: &Scene, meshed: &Meshed, observe
         // `auto` decides itself how many iterations it needs.
         let most = if method == MethodKind::Auto { u32::MAX } else { Study::MAX_ITERATIONS };
         let times = times_from_rest(&mut simulation, most, &|_| observe(Progress::at(fraction)));
-        let times = times.ok_or(StudyError::Cancelled)?;
         simulation.reset();
-        for (iterations, time) in (1..).zip(times) {
+        for (iterations, time) in (1..).zip(times.ok_or(StudyError::Cancelled)?) {
             simulation.step();
             let ended = *simulation.status() != Status::Running;
             if !ended && (method == MethodKind::Auto || !ITERATIONS.contains(&iterations)) {
                 continue;
             }
-            let error = meshed.error(&[first_probe(&simulation)?], simulation.is_linear(), &study.reference);
+            let (setting, result) = (Setting { iterations, ..setting }, [first_probe(&simulation)?]);
+            let converged = *simulation.status() == Status::Converged;
             measurements.push(Measurement {
-                setting: Setting { iterations, ..setting },
-                dofs: simulation.system().dofs(),
-                converged: *simulation.status() == Status::Converged,
                 milliseconds: time.total().as_secs_f64() * 1e3,
-                error: Some(error),
                 time,
-                motion: None,
-                pareto: false,
+                ..meshed.measurement(setting, converged, &result, simulation.is_linear(), None)
             });
         }
     }
-    study.measurements.append(&mut measurements);
     Ok(())
-}
-
-/// Meshes a scene, and computes the displacements of its first probe on that mesh, m.
-pub(super) fn meshed(scene: &Scene, mesh: Setting, observe: Observer<'_>) -> Result<Meshed> {
-    Meshed::new(scene, mesh, |mut scene, system| {
-        scene.solver.max_iterations = scene.solver.max_iterations.max(1000);
-        let mut simulation = Simulation::with_system(&scene, system.clone())?;
-        check(simulation.solve_watched(&mut |_| observe(Progress::at(0.0))))?;
-        match *simulation.status() != Status::Converged && scene.solver.method == MethodKind::Newton {
-            true => Err(StudyError::NoReference),
-            false => Ok(vec![first_probe(&simulation)?]),
-        }
-    })
 }
 
 /// Largest number of rows of cells in meshes that are measured in addition to those with square cells; elements without

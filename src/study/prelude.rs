@@ -5,7 +5,7 @@ pub(super) use std::sync::Arc;
 pub(super) use nalgebra::Vector2;
 
 pub(super) use super::parallel::{self, lock};
-pub(super) use super::progress::{Extent, Result, StudyError, check};
+pub(super) use super::progress::{Extent, Result, StudyError, check, within};
 pub(super) use super::setting::{Setting, Stepping, mesh_text, step_text};
 pub(super) use crate::assembly::System;
 pub(super) use crate::dynamics::INTEGRATORS;

@@ -17,8 +17,6 @@ pub enum StudyError {
     Simulation(#[from] SimulationError),
     /// The scene is dynamic and has no equilibrium to compare with.
     InMotion,
-    /// The scene is static and has no path to compare with.
-    AtRest,
     /// The motion on the fine mesh, which would be the reference, stops.
     NoPath(StopReason),
     /// The scene has no probe that moves.
@@ -52,9 +50,6 @@ impl From<&StudyError> for Sentence {
             StudyError::InMotion => "expected a scene with analysis = \"static\": equilibria are compared, and this \
                                      scene is in motion; `warpbeam study` compares motions"
                 .into(),
-            StudyError::AtRest => "expected a scene with analysis = \"dynamic\": the study measures the path of a \
-                                   motion, and this scene is at rest"
-                .into(),
             StudyError::NoPath(reason) => {
                 sentence!("no reference solution: the motion of the fine mesh stops: %{reason}", reason)
             }
@@ -83,7 +78,6 @@ impl From<&StudyError> for Sentence {
 
 impl StudyError {
     /// Returns `true` if the scene is valid, but no sufficiently accurate reference solution exists.
-    #[must_use]
     pub fn is_unknown(&self) -> bool {
         matches!(
             self,

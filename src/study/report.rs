@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use super::claim::Claim;
-use super::motion::MotionReference;
+use super::extremes::distinct;
 use super::prelude::*;
 use super::ranking::Tuning;
-use super::trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};
+use super::trade::{ErrorSplit, Measurement, Study};
+use crate::dynamics::Counts;
 
 /// Columns of the table of a body at rest, and of a motion.
 const COLUMNS: [&str; 2] = [
@@ -15,105 +16,100 @@ const COLUMNS: [&str; 2] = [
 ];
 
 impl Study {
-    /// Formats the study as CSV. `error_bound_percent` is the sum of the error's parts; `at_most_percent` includes the
-    /// reference's own error. At rest, times are in microseconds. In motion, `solves` is the number per step or stage, 0 to
-    /// iterate to the tolerance; `resolved` is `true` if the sum of the error's parts is above the reference's own error;
-    /// motions that did not finish have no error. `docs/reference/results.md` has the columns.
-    #[must_use]
+    /// Formats the study as CSV; `docs/reference/results.md` has the columns. Motions that did not finish have no error.
     pub fn table(&self) -> String {
-        let mut text = COLUMNS[usize::from(matches!(self.reference, StudyReference::Motion(_)))].to_owned();
-        for (m, undecided) in self.measurements.iter().zip(self.undecided()) {
-            let [along, across] = m.setting.cells.unwrap_or([0, 0]);
-            let columns = match m.setting.stepping.zip(m.motion) {
-                None => columns_at_rest(m),
-                Some((stepping, motion)) => self.columns_in_motion(m, stepping, motion),
+        /// Change of the energy below which it counts as kept, percent of the largest kinetic energy.
+        const KEPT: f64 = 0.01;
+        let mut text = COLUMNS[usize::from(self.moves())].to_owned();
+        for m in &self.measurements {
+            let Setting { element, cells, method, iterations, stepping } = m.setting;
+            let ([along, across], (element, method)) = (cells.unwrap_or([0, 0]), (element.id(), method.id()));
+            let Measurement { dofs, converged, milliseconds, pareto, undecided, .. } = m;
+            let ErrorSplit { total, discretization, iteration, model } = m.error.unwrap_or_default();
+            let (error, at_most) = (m.error_percent(), self.error_bound(m));
+            let if_known = |text: String| m.error.map_or_else(String::new, |_| text);
+            let exponents =
+                |values: &[f64]| values.iter().map(|v| if_known(format!("{v:e}"))).collect::<Vec<_>>().join(",");
+            let (parts, at_most) = (exponents(&[discretization, iteration, model, error]), exponents(&[at_most]));
+            let columns = if let Some((stepping, motion)) = stepping.zip(m.motion) {
+                let (integrator, step, drift) = (stepping.integrator.id(), stepping.time_step, motion.drift_percent);
+                let ending = match (converged, motion.is_cut_short) {
+                    (true, _) => "finished",
+                    (false, true) => "cut_short",
+                    (false, false) => "stopped",
+                };
+                let totals = exponents(&[total, motion.rms_percent]);
+                let resolved = if_known((error > self.own_error_percent).to_string());
+                let energy = match drift {
+                    d if d.abs() < KEPT => "kept",
+                    d if d < 0.0 => "lost",
+                    _ => "gained",
+                };
+                let Counts { steps, solves, factorizations, .. } = motion.counts;
+                format!(
+                    "{integrator},{method},{step:e},{iterations},{ending},{milliseconds:.4},{totals},{parts},{resolved},{drift:e},{energy},{steps},{solves},{factorizations}"
+                )
+            } else {
+                let t = &m.time;
+                let times = [t.total(), t.rotate, t.linearize, t.factorize, t.solve + t.advance];
+                let times = times.map(|time| format!("{:.2}", time.as_secs_f64() * 1e6)).join(",");
+                format!("{method},{iterations},{converged},{times},{},{parts}", exponents(&[total]))
             };
-            let at_most = m.error.map_or_else(String::new, |_| format!("{:e}", self.error_bound(m)));
-            let (element, dofs) = (m.setting.element.id(), m.dofs);
-            let _ = writeln!(text, "{element},{along},{across},{dofs},{columns},{},{at_most},{undecided}", m.pareto);
+            let _ = writeln!(text, "{element},{along},{across},{dofs},{columns},{pareto},{at_most},{undecided}");
         }
         text
     }
 
-    fn columns_in_motion(&self, m: &Measurement, stepping: Stepping, motion: MotionFigures) -> String {
-        let errors = m.error.map_or_else(
-            || ",,,,,,".to_owned(),
-            |e| {
-                let parts = [e.total, motion.rms_percent, e.discretization, e.iteration, e.model, e.bound()];
-                format!("{},{}", exponents(parts), e.bound() > self.own_error_percent)
-            },
-        );
-        let Setting { method, iterations, .. } = m.setting;
-        let MotionFigures { drift_percent, counts, .. } = motion;
-        format!(
-            "{},{},{:e},{iterations},{},{:.4},{errors},{drift_percent:e},{},{},{},{}",
-            stepping.integrator.id(),
-            method.id(),
-            stepping.time_step,
-            m.ending(),
-            m.milliseconds,
-            motion.energy(),
-            counts.steps,
-            counts.solves,
-            counts.factorizations
-        )
-    }
-
-    /// Formats a summary for display: reference solution, Pareto front, and cost of given errors; of a motion also the effect
-    /// of its time step and the savings of `auto`.
-    #[must_use]
+    /// Formats a summary for display: reference solution, Pareto front, and cost of given errors.
     pub fn summary(&self) -> String {
-        let StudyReference::Motion(reference) = &self.reference else {
-            let head = format!("{}: error of the first probe against {}\n\n", self.scene, self.reference);
-            return head + &self.front_text() + &self.costs_text();
-        };
+        let (reference, costs) = (&self.reference, self.front_text() + &self.costs_text());
+        if !self.moves() {
+            return format!("{}: error of the first probe against {}\n\n{costs}", self.scene, reference.text);
+        }
+        let (duration, lasts) = (reference.samples.duration(), reference.scene_duration);
         let mut text = format!(
             "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
-             {:.4} m,\nagainst {reference}\n",
+             {:.4} m,\nagainst {}\n",
             self.scene,
-            number(round(reference.duration())),
-            reference.size
+            // The duration is a sum of steps.
+            number((duration * 1e6).round() / 1e6),
+            reference.size,
+            reference.text
         );
-        if reference.duration() < reference.scene_duration * (1.0 - 1e-6) {
-            let lasts = number(reference.scene_duration);
-            let _ = writeln!(text, "(the scene lasts {lasts} s; the rest is not measured)");
+        if duration < lasts * (1.0 - 1e-6) {
+            let _ = writeln!(text, "(the scene lasts {} s; the rest is not measured)", number(lasts));
         }
-        text += &format!("\n{}{}\n", self.front_text(), self.costs_text());
-        self.add_steps(reference, &mut text);
-        self.add_auto(&mut text);
+        text += &format!("\n{costs}");
         let unfinished = self.measurements.iter().filter(|m| !m.converged).count();
         if unfinished > 0 {
             let settings = count(unfinished as u64, "setting");
-            let _ = writeln!(text, "{settings} did not reach the end: see the column `ending` of the table");
+            let _ = writeln!(text, "\n{settings} did not reach the end: see the column `ending` of the table");
         }
         text
     }
 
     /// Formats a row for each setting of the Pareto front, fastest first, and a note if the rank of one is undecided.
     fn front_text(&self) -> String {
-        let moves = matches!(self.reference, StudyReference::Motion(_));
+        let moves = self.moves();
         let (unit, iteration) = if moves { (" per simulated second", "time steps") } else { ("", "stopped early") };
         let mut text = format!(
             "Pareto front: no measured setting is both faster and more accurate (time{unit}; error: at most the sum of its \
              parts and of the reference's own error):\n"
         );
-        let row = |columns: &[String]| columns.iter().map(|text| format!("{text:>14}")).collect::<String>();
-        let columns = ["time, ms", "at most, %", "measured", "mesh error", iteration, "linear theory"];
-        let in_motion = if moves { &["rms", "energy, %"][..] } else { &[] };
-        let columns: Vec<String> = columns.iter().chain(in_motion).map(ToString::to_string).collect();
-        let _ = writeln!(text, "{}   setting", row(&columns));
-        let ranked = self.measurements.iter().zip(self.undecided());
-        let mut front: Vec<(&Measurement, bool)> = ranked.filter(|(m, _)| m.pareto).collect();
-        front.sort_by(|(a, _), (b, _)| a.milliseconds.total_cmp(&b.milliseconds));
-        for (m, undecided) in &front {
+        let mut columns = vec!["time, ms", "at most, %", "measured", "mesh error", iteration, "linear theory"];
+        columns.extend(if moves { &["rms", "energy, %"][..] } else { &[] });
+        let heading: String = columns.iter().map(|text| format!("{text:>14}")).collect();
+        let _ = writeln!(text, "{heading}   setting");
+        let front = self.front();
+        for m in &front {
             let Some(ErrorSplit { total, discretization, iteration, model }) = m.error else { continue };
             let mut values = vec![m.milliseconds, self.error_bound(m), total, discretization, iteration, model];
             values.extend(m.motion.iter().flat_map(|motion| [motion.rms_percent, motion.drift_percent]));
-            let values: Vec<String> = values.iter().map(|value| format!("{value:.4}")).collect();
-            let _ =
-                writeln!(text, "{}   {}{}", row(&values), m.setting, if *undecided { " (rank undecided)" } else { "" });
+            let values: String = values.iter().map(|value| format!("{value:>14.4}")).collect();
+            let undecided = if m.undecided { " (rank undecided)" } else { "" };
+            let _ = writeln!(text, "{values}   {}{undecided}", m.setting);
         }
-        if front.iter().any(|(m, undecided)| m.error.is_some() && *undecided) {
+        if front.iter().any(|m| m.undecided) {
             let _ = writeln!(
                 text,
                 "rank undecided: a faster setting may be as accurate, because their errors differ by less than the \
@@ -131,12 +127,7 @@ impl Study {
             Some(_) => m.setting.series().to_owned(),
             None => format!("{} {}", m.setting.element.id(), m.setting.series()),
         };
-        let mut rivals: Vec<String> = Vec::new();
-        for name in self.measurements.iter().map(rival) {
-            if !rivals.contains(&name) {
-                rivals.push(name);
-            }
-        }
+        let rivals = distinct(self.measurements.iter().map(rival));
         let mut text = String::new();
         for percent in [10.0, 1.0, 0.1] {
             let _ = writeln!(text, "{}", Claim::of_study(self, percent));
@@ -154,93 +145,12 @@ impl Study {
         }
         text
     }
-
-    /// Returns each measurement with its time stepping and figures.
-    fn motions(&self) -> impl Iterator<Item = (&Measurement, Stepping, &MotionFigures)> {
-        self.measurements.iter().filter_map(|m| Some((m, m.setting.stepping?, m.motion.as_ref()?)))
-    }
-
-    /// Adds the effect of the time step on error and energy, on the scene's mesh.
-    fn add_steps(&self, reference: &MotionReference, text: &mut String) {
-        let _ = writeln!(
-            text,
-            "by time step, newton on {}: error of the time steps, %; energy drift, % of the largest kinetic energy; \
-             time per simulated second, ms",
-            mesh_text(reference.element, reference.own_mesh)
-        );
-        let own = (reference.element, reference.own_mesh, MethodKind::Newton);
-        for (m, stepping, motion) in self.motions() {
-            let Setting { element, cells, method, iterations, .. } = m.setting;
-            if (element, cells, method) != own {
-                continue;
-            }
-            let _ = writeln!(
-                text,
-                "    {:<16} {:<18} {:>10}  {:>12} {:>12.5} {:<6} {:>10.3}",
-                stepping.integrator.id(),
-                stepping.solves_text(iterations).to_string(),
-                step_text(stepping.time_step),
-                m.error.map_or_else(|| m.ending().replace('_', " "), |e| format!("{:.4}", e.iteration)),
-                motion.drift_percent,
-                motion.energy(),
-                m.milliseconds
-            );
-        }
-        text.push('\n');
-    }
-
-    /// Adds the savings of `auto` compared with `newton`.
-    fn add_auto(&self, text: &mut String) {
-        let autos = self.motions().filter(|(m, ..)| m.setting.method == MethodKind::Auto);
-        let pairs = autos.filter_map(|(auto, _, figures)| {
-            let setting = Setting { method: MethodKind::Newton, ..auto.setting };
-            let (newton, _, of_newton) = self.motions().find(|(m, ..)| m.setting == setting)?;
-            let farther = auto.error?.bound() - newton.error?.bound();
-            let [all, few] = [of_newton, figures].map(|motion| motion.counts.factorizations as f64);
-            let factors = few / all.max(1.0);
-            Some((auto.milliseconds / newton.milliseconds, factors, farther))
-        });
-        let pairs: Vec<(f64, f64, f64)> = pairs.collect();
-        let median = |of: fn(&(f64, f64, f64)) -> f64| {
-            let mut values: Vec<f64> = pairs.iter().map(of).collect();
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied().unwrap_or(1.0)
-        };
-        let worst = pairs.iter().map(|p| p.2).fold(0.0, f64::max);
-        if !pairs.is_empty() {
-            let _ = writeln!(
-                text,
-                "auto compared with newton, otherwise the same setting: {:.2} of the time and {:.2} of the \
-                 factorizations (medians), its error larger by {} % at most",
-                median(|p| p.0),
-                median(|p| p.1),
-                number(round(worst))
-            );
-        }
-    }
-}
-
-fn columns_at_rest(m: &Measurement) -> String {
-    let t = &m.time;
-    let times = [t.total(), t.rotate, t.linearize, t.factorize, t.solve + t.advance];
-    let times = times.map(|time| format!("{:.2}", time.as_secs_f64() * 1e6)).join(",");
-    let errors = m.error.map_or([0.0; 5], |e| [e.total, e.discretization, e.iteration, e.model, e.bound()]);
-    format!("{},{},{},{times},{}", m.setting.method.id(), m.setting.iterations, m.converged, exponents(errors))
-}
-
-fn exponents<const N: usize>(values: [f64; N]) -> String {
-    values.map(|value| format!("{value:e}")).join(",")
-}
-
-/// Rounds to six decimal places, for sums of steps.
-fn round(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
 }
 
 impl std::fmt::Display for Tuning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { chosen, study, .. } = self;
-        writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference)?;
+        writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference.text)?;
         writeln!(f, "{}:", Claim::of_tuning(self))?;
         let cost = |m: &Measurement| {
             let bound = study.error_bound(m);

@@ -30,7 +30,6 @@ pub struct Stepping {
 
 impl Setting {
     /// Returns the setting of a scene.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let dynamics = &scene.dynamics;
         let moves = scene.analysis == Analysis::Dynamic;
@@ -54,7 +53,6 @@ impl Setting {
     }
 
     /// Returns the scene with this setting.
-    #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         scene.set_element(self.element);
@@ -81,34 +79,28 @@ impl From<&Setting> for Sentence {
             let count = Self::count(iterations, "iteration");
             return sentence!("%{mesh}, %{method}, %{count}", mesh, method = method.id(), count);
         };
+        let integrator = stepping.integrator.entry();
         let theory = match method {
             method if method.moves_linearly() => "linear theory",
-            _ if stepping.integrator.entry().is_explicit() => "corotated",
+            _ if integrator.is_explicit() => "corotated",
             method => method.id(),
         };
-        sentence!(
-            "%{mesh}, %{theory}, %{integrator}, %{step}, %{solves}",
-            integrator = stepping.integrator.id(),
-            step = step_text(stepping.time_step),
-            solves = stepping.solves_text(iterations),
-            mesh,
-            theory
-        )
-    }
-}
-
-impl Stepping {
-    /// Describes a number of solves per step, or per stage of one.
-    pub(super) fn solves_text(self, solves: u32) -> Sentence {
-        let entry = self.integrator.entry();
-        match (solves, entry.stages > 1) {
-            _ if entry.is_explicit() => sentence!("no solve"),
+        let solves = match (iterations, integrator.stages > 1) {
+            _ if integrator.is_explicit() => sentence!("no solve"),
             (0, _) => sentence!("to tolerance"),
             (n @ 1, true) => sentence!("%{n} solve a stage", n),
             (n @ 1, false) => sentence!("%{n} solve a step", n),
             (n, true) => sentence!("%{n} solves a stage", n),
             (n, false) => sentence!("%{n} solves a step", n),
-        }
+        };
+        sentence!(
+            "%{mesh}, %{theory}, %{integrator}, %{step}, %{solves}",
+            integrator = integrator.id,
+            step = step_text(stepping.time_step),
+            mesh,
+            theory,
+            solves
+        )
     }
 }
 

@@ -1,14 +1,13 @@
 //! Speed–accuracy study: error against time for every element, mesh, method and number of iterations, of a motion also for
 //! every integrator and time step, on this machine.
 
-use super::motion::MotionReference;
+use super::motion::Samples;
 use super::prelude::*;
-use super::reference::{Reference, system_of};
 use crate::dynamics::Counts;
 
 /// Error of a result and its parts: distances of the first probe's displacement, percent of the reference's; of a motion,
 /// largest distances of its path, percent of the size of the reference's path. The total is at most the sum of the parts.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ErrorSplit {
     /// Distance from the reference solution.
     pub total: f64,
@@ -21,51 +20,45 @@ pub struct ErrorSplit {
     pub model: f64,
 }
 
-impl ErrorSplit {
-    /// Returns the sum of the parts, an upper bound of the distance from the reference. Settings are compared by it: an
-    /// early stop that happens to compensate the error of a coarse mesh is luck, not accuracy.
-    #[must_use]
-    pub fn bound(&self) -> f64 {
-        self.discretization + self.iteration + self.model
-    }
-}
-
-/// Path of the first probe, m; at rest its displacement alone.
-pub(super) type ProbePath = Vec<Vector2<f64>>;
-
-/// Mesh with the results of both theories on it, without an error of iterations or time steps.
-#[derive(Clone, Debug)]
-pub(super) struct Meshed {
+/// Mesh of a study with the results of both theories on it, without an error of iterations or time steps.
+pub(super) struct Meshed<'a> {
     pub mesh: Setting,
+    /// Scene with this mesh.
+    pub scene: Scene,
     pub system: Arc<System>,
-    /// Result of corotated theory.
-    exact: ProbePath,
-    linear: ProbePath,
+    pub reference: &'a StudyReference,
+    /// Paths of the first probe by corotated and by linear theory, m; at rest its displacements.
+    pub theories: Vec<Vec<Vector2<f64>>>,
 }
 
-impl Meshed {
-    /// Meshes a scene; `result` computes the result of the scene's method on this mesh.
-    pub fn new(
-        scene: &Scene,
-        mesh: Setting,
-        result: impl Fn(Scene, &Arc<System>) -> Result<ProbePath>,
-    ) -> Result<Self> {
-        let scene = mesh.apply(scene);
-        let system = system_of(&scene)?;
-        let of = |method| result(scene.clone().with_method(method), &system);
-        let (exact, linear) = (of(MethodKind::Newton)?, of(MethodKind::Linear)?);
-        Ok(Self { mesh, system, exact, linear })
-    }
-
-    /// Splits the error of a result of one of the theories.
-    pub fn error(&self, result: &[Vector2<f64>], is_linear: bool, reference: &StudyReference) -> ErrorSplit {
-        let own = if is_linear { &self.linear } else { &self.exact };
-        let largest = |path: &[Vector2<f64>], from| reference.distance(path, from)[0];
-        ErrorSplit {
-            total: largest(result, None),
-            discretization: largest(&self.exact, None),
-            iteration: largest(result, Some(own)),
-            model: largest(own, Some(&self.exact)),
+impl Meshed<'_> {
+    /// Returns the measurement, without its time, of the result of a setting, which `is_linear` if linear theory has it.
+    pub fn measurement(
+        &self,
+        setting: Setting,
+        converged: bool,
+        result: &[Vector2<f64>],
+        is_linear: bool,
+        motion: Option<MotionFigures>,
+    ) -> Measurement {
+        let (exact, own) = (&self.theories[0], &self.theories[usize::from(is_linear)]);
+        let largest = |a: &[Vector2<f64>], b: &[Vector2<f64>]| self.reference.distance(a, b)[0];
+        let error = || ErrorSplit {
+            total: largest(result, &self.reference.path),
+            discretization: largest(exact, &self.reference.path),
+            iteration: largest(result, own),
+            model: largest(own, exact),
+        };
+        Measurement {
+            setting,
+            dofs: self.system.dofs(),
+            converged,
+            milliseconds: 0.0,
+            error: (converged || motion.is_none()).then(error),
+            time: Timings::default(),
+            motion,
+            pareto: false,
+            undecided: false,
         }
     }
 }
@@ -89,9 +82,12 @@ pub struct Measurement {
     /// Figures of a motion; `None` for a body at rest.
     #[doc(hidden)]
     pub motion: Option<MotionFigures>,
-    /// `true` if no other measurement is both faster and, by [`ErrorSplit::bound`], more accurate; errors of paths below
+    /// `true` if no other measurement is both faster and, by [`Self::error_percent`], more accurate; errors of paths below
     /// the reference's own error count as equal.
     pub pareto: bool,
+    /// `true` if its rank is undecided: its error and the smallest one of faster settings differ by less than the
+    /// reference's own error.
+    pub undecided: bool,
 }
 
 /// Figures of a measured motion.
@@ -110,52 +106,19 @@ pub struct MotionFigures {
     pub counts: Counts,
 }
 
-impl MotionFigures {
-    /// Returns the effect of the integrator on the energy: `kept` if it changes by less than a ten-thousandth of the largest
-    /// kinetic energy, else `lost` or `gained`.
-    pub fn energy(&self) -> &'static str {
-        const KEPT: f64 = 0.01;
-        match self.drift_percent {
-            d if d.abs() < KEPT => "kept",
-            d if d < 0.0 => "lost",
-            _ => "gained",
-        }
-    }
-}
-
 impl Measurement {
-    /// Returns the scene as measured: on the setting's mesh, with its method, stopped after the same number of
-    /// iterations.
-    #[must_use]
-    pub fn apply(&self, scene: &Scene) -> Scene {
-        self.applied().apply(scene)
-    }
-
-    /// Returns `true` if a scene is the result of [`Self::apply`].
-    #[must_use]
-    pub fn is_applied_to(&self, scene: &Scene) -> bool {
-        Setting::of(scene) == self.applied()
-    }
-
-    /// Returns the setting of a scene with this measurement: a solve that had converged is not stopped.
-    fn applied(&self) -> Setting {
+    /// Returns the setting of a scene with this measurement: stopped after the same number of iterations, unless the solve
+    /// had converged.
+    pub fn applied(&self) -> Setting {
         let is_stopped = self.motion.is_some() || !self.converged;
         Setting { iterations: if is_stopped { self.setting.iterations } else { 0 }, ..self.setting }
     }
 
-    /// Returns the sum of the error's parts, percent; infinite for a motion that did not finish.
-    #[must_use]
+    /// Returns the sum of the error's parts, percent, an upper bound of the distance from the reference; infinite for a motion
+    /// that did not finish. Settings are compared by it: an early stop that happens to compensate the error of a coarse mesh
+    /// is luck, not accuracy.
     pub fn error_percent(&self) -> f64 {
-        self.error.map_or(f64::INFINITY, |error| error.bound())
-    }
-
-    /// Returns the identifier of a motion's end in tables.
-    pub(super) fn ending(&self) -> &'static str {
-        match self.motion {
-            _ if self.converged => "finished",
-            Some(MotionFigures { is_cut_short: true, .. }) => "cut_short",
-            _ => "stopped",
-        }
+        self.error.map_or(f64::INFINITY, |error| error.discretization + error.iteration + error.model)
     }
 
     pub(super) fn time_text(&self) -> String {
@@ -168,34 +131,29 @@ impl Measurement {
 
 /// Reference solution of a study.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum StudyReference {
-    /// Displacements of a body at rest; errors are measured at the first probe.
-    Rest(Reference),
-    /// Path of a motion.
-    Motion(MotionReference),
+#[non_exhaustive]
+pub struct StudyReference {
+    /// Displacement of the first probe from rest, m, at each of the sampling times; at rest a single one.
+    pub path: Vec<Vector2<f64>>,
+    /// Largest displacement, m; errors are relative to it.
+    pub size: f64,
+    /// Bound of its own error, percent of the size.
+    pub error_percent: f64,
+    /// Sampling times; their interval is 0 at rest.
+    pub samples: Samples,
+    /// Duration of the scene, s.
+    pub scene_duration: f64,
+    /// Origin and own error in words.
+    pub text: Sentence,
 }
 
 impl StudyReference {
-    /// Returns the largest and the root mean square distance of a path from another one, or from the reference, percent of
-    /// the size of the reference.
-    pub(super) fn distance(&self, path: &[Vector2<f64>], from: Option<&[Vector2<f64>]>) -> [f64; 2] {
-        match self {
-            Self::Rest(reference) => reference.first().zip(path.first()).map_or([f64::NAN; 2], |(own, end)| {
-                [own.percent(*end, from.and_then(<[_]>::first).copied().unwrap_or(own.displacement)); 2]
-            }),
-            Self::Motion(reference) => reference.distance(path, from.unwrap_or(&reference.path)),
-        }
-    }
-}
-
-displayed!(StudyReference);
-
-impl From<&StudyReference> for Sentence {
-    fn from(reference: &StudyReference) -> Self {
-        match reference {
-            StudyReference::Rest(reference) => reference.into(),
-            StudyReference::Motion(reference) => reference.into(),
-        }
+    /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
+    /// the size.
+    pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
+        let distances = a.iter().zip(b).map(|(a, b)| 100.0 * (a - b).norm() / self.size);
+        let squares: f64 = distances.clone().map(|d| d * d).sum();
+        [distances.reduce(f64::max).unwrap_or(0.0), (squares / a.len().min(b.len()).max(1) as f64).sqrt()]
     }
 }
 
@@ -222,44 +180,9 @@ impl Study {
     /// Largest number of iterations for methods that have not converged before.
     pub(crate) const MAX_ITERATIONS: u32 = 20;
 
-    /// Returns a study without measurements.
-    pub(super) fn begin(scene: &Scene, reference: StudyReference) -> Result<Self> {
-        let own_error_percent = match &reference {
-            StudyReference::Rest(reference) => reference.first().ok_or(StudyError::NoBound)?.own_error_percent,
-            StudyReference::Motion(reference) => reference.error_percent,
-        };
-        let (scene, asked_percent) = (scene.name.clone(), scene.solver.max_error_percent);
-        Ok(Self { scene, reference, own_error_percent, asked_percent, measurements: Vec::new(), is_partial: true })
-    }
-
-    /// Calls `measure` with each mesh, and `partial` with the study so far; a cancelled study keeps its measurements.
-    /// Each mesh has its approximate cost; `begun` is the fraction of the work done before.
-    pub(super) fn measure_meshes<M: Copy>(
-        mut self,
-        begun: f64,
-        meshes: &[(M, f64)],
-        observe: Observer<'_>,
-        partial: &mut dyn FnMut(&Self),
-        mut measure: impl FnMut(&mut Self, M, Observer<'_>) -> Result<()>,
-    ) -> Result<Self> {
-        let all: f64 = meshes.iter().map(|(_, weight)| weight).sum();
-        let mut done = 0.0;
-        for &(mesh, weight) in meshes {
-            let fraction = |part: f64| begun + (1.0 - begun) * ((done + part * weight) / all);
-            let measured =
-                measure(&mut self, mesh, &|part| observe(Progress { fraction: fraction(part.fraction), ..part }));
-            self.mark_pareto();
-            match measured {
-                Err(StudyError::Cancelled) if !self.measurements.is_empty() => return Ok(self),
-                measured => measured?,
-            }
-            partial(&self);
-            // A cancellation is seen by the next mesh.
-            let _ = observe(Progress::at(fraction(1.0)));
-            done += weight;
-        }
-        self.is_partial = false;
-        Ok(self)
+    /// Returns `true` for a motion.
+    pub(crate) fn moves(&self) -> bool {
+        self.reference.samples.interval > 0.0
     }
 
     /// Returns `true` if the method of a measurement converged on its mesh, after this or another number of iterations.

@@ -298,7 +298,7 @@ fn settings_have_the_errors_of_study() {
         assert!(texts.iter().any(|(text, bound)| text == label && *bound <= 1.0), "{label} is not in the table");
     }
     let scene = scene.with_method(MethodKind::Newton);
-    let own = written.iter().find(|(row, m)| m.is_applied_to(&scene) && row[column("converged")] == "true");
+    let own = written.iter().find(|(row, m)| m.applied() == Setting::of(&scene) && row[column("converged")] == "true");
     let (row, _) = own.unwrap();
     let error: f64 = row[column("error_percent")].parse().unwrap();
     assert_eq!(percent(error), percent(solve(&scene)["probes"][0]["error_percent"].as_f64().unwrap()));

@@ -581,7 +581,7 @@ fn the_study_runs_in_the_background_and_its_best_setting_is_applied() {
         }
         *ui.scene() != applied
     });
-    let is_setting = |m: &Measurement| m.is_applied_to(ui.scene());
+    let is_setting = |m: &Measurement| m.applied() == Setting::of(ui.scene());
     assert!(is_applied && measurements(ui.state()).iter().any(is_setting), "{:?}", ui.scene().solver);
     pick(&mut ui, "Scene", "bridge");
     assert!(ui.state().study().0.is_none());

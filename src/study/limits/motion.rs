@@ -2,9 +2,10 @@
 //! reference.
 
 use super::{LimitPoint, MethodLimits, REFERENCE, TIME_STEPS};
-use crate::study::motion::{MotionReference, REFERENCE_STEPS, Samples, fine_path, path};
+use crate::study::motion::{REFERENCE_STEPS, Samples, fine_path, path};
 use crate::study::prelude::*;
 use crate::study::reference::system_of;
+use crate::study::trade::StudyReference;
 
 /// Largest number of steps of a motion; shorter time steps are not measured.
 const MAX_STEPS: f64 = 4000.0;
@@ -15,10 +16,9 @@ pub(super) fn limits(
     observe: Observer<'_>,
     partial: &(dyn Fn(&MethodLimits) + Sync),
 ) -> Result<MethodLimits> {
-    let observe_first =
-        |progress: Progress<'_>| observe(Progress { fraction: REFERENCE * progress.fraction, ..progress });
-    let reference = MotionReference::new(scene, Extent::Quick, &observe_first)?;
-    let (mut samples, system) = (reference.samples(), system_of(scene)?);
+    let observe_first = |progress: Progress<'_>| observe(within(progress, [0.0, REFERENCE]));
+    let reference = StudyReference::of_motion(scene, Extent::Quick, &observe_first)?;
+    let (mut samples, system) = (reference.samples, system_of(scene)?);
     // Path of the first probe on the scene's mesh, with the reference's steps.
     let (newton, steps) = (scene.clone().with_method(MethodKind::Newton), Extent::Quick.pick(REFERENCE_STEPS));
     let exact = fine_path(newton, &system, samples, steps, &observe_first)?;
@@ -37,7 +37,7 @@ pub(super) fn limits(
     // All motions end at the same time.
     samples.count -= samples.count % (1 << powers.last().copied().unwrap_or_default().max(0));
     // Only the path with a step of 2ⁿ sampling intervals has the samples of the reference: its error is the sum of those of
-    // the mesh, the time steps and the reference, as in `ErrorSplit::bound`. Of others only convergence is found.
+    // the mesh, the time steps and the reference, as in `Measurement::error_percent`. Of others only convergence is found.
     let solve = |setting: &Setting, (factor, is_compared): (f64, bool), observe: Observer<'_>| {
         let power = (factor / ratio).log2().round() as i32;
         let [apart, steps] = [power, -power].map(|exponent| 1_u32 << exponent.max(0));

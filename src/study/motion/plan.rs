@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use crate::assembly::{Mass, Problem};
-use crate::dynamics::{IntegratorEntry, lowest_frequency};
+use crate::dynamics::lowest_frequency;
 use crate::study::prelude::*;
 use crate::study::reference::system_of;
 
@@ -40,8 +40,8 @@ const MIN_STEPS: f64 = 8.0;
 const MAX_NODES: f64 = 1000.0;
 
 /// Sampling times of paths: multiples of the longest time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::study) struct Samples {
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Samples {
     /// Time between two samples, s.
     pub interval: f64,
     /// Number of samples, without the start.
@@ -50,7 +50,7 @@ pub(in crate::study) struct Samples {
 
 impl Samples {
     /// Returns the sampling times of a scene.
-    pub fn of(scene: &Scene, extent: Extent) -> Result<Self, StudyError> {
+    pub(in crate::study) fn of(scene: &Scene, extent: Extent) -> Result<Self> {
         let (periods, steps) = extent.pick(LONGEST);
         let own = scene.dynamics.time_step;
         let system = system_of(scene)?;
@@ -69,6 +69,7 @@ impl Samples {
         Ok(Self { interval, count: (duration / interval * (1.0 + 1e-9)).floor().max(1.0) as u32 })
     }
 
+    /// Returns the time from the start to the last sample, s.
     pub fn duration(self) -> f64 {
         self.interval * f64::from(self.count)
     }
@@ -131,25 +132,20 @@ pub(super) fn settings(mesh: Setting, critical: Option<f64>, samples: Samples, e
                 true => matches!(method, MethodKind::Linear | MethodKind::Newton),
                 false => extent == Extent::Full || method != MethodKind::Warped,
             };
+            // Numbers of solves that give different results.
+            let solves = |method: MethodKind| match integrator.is_explicit() || integrator.always_iterates {
+                true => &[0],
+                // A single solve is exact.
+                false if method.moves_linearly() => &[1],
+                false => extent.pick(SOLVES),
+            };
             for method in METHODS.iter().map(|m| m.kind).filter(|&method| differs(method)) {
                 let of = |&iterations| (Setting { method, iterations, stepping: Some(stepping), ..mesh }, steps);
-                settings.extend(solves(integrator, method, extent).iter().map(of));
+                settings.extend(solves(method).iter().map(of));
             }
         }
     }
     settings
-}
-
-/// Returns the numbers of solves that give different results.
-fn solves(integrator: &IntegratorEntry, method: MethodKind, extent: Extent) -> &'static [u32] {
-    if integrator.is_explicit() || integrator.always_iterates {
-        &[0]
-    } else if method.moves_linearly() {
-        // A single solve is exact.
-        &[1]
-    } else {
-        extent.pick(SOLVES)
-    }
 }
 
 #[cfg(test)]
@@ -159,18 +155,16 @@ mod tests {
     /// A scene with a mesh that a study has recommended is studied on the same meshes as the scene it came from.
     #[test]
     fn coarse_scenes_are_studied_on_the_meshes_of_finer_ones() {
-        let beam = |element, along| Scene::beam(1.0, 0.1).with_element(element).with_cells(along, 1);
-        let fine = beam(ElementKind::T6, 20);
-        for coarse in
-            [beam(ElementKind::Q4, 20), beam(ElementKind::Q4, 10), beam(ElementKind::T3, 40), beam(ElementKind::T6, 10)]
-        {
-            for element in [ElementKind::T3, ElementKind::T6, ElementKind::Q4] {
-                for factor in [0.5, 1.0, 1.5] {
-                    assert_eq!(cells(&coarse, element, factor), cells(&fine, element, factor), "{element:?} {factor}");
-                }
+        const ELEMENTS: [ElementKind; 3] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4];
+        let [t3, t6, q4] = ELEMENTS;
+        let of = |element, along, kind, factor| {
+            cells(&Scene::beam(1.0, 0.1).with_element(element).with_cells(along, 1), kind, factor)
+        };
+        for (element, along) in [(q4, 20), (q4, 10), (t3, 40), (t6, 10)] {
+            for (kind, factor) in ELEMENTS.into_iter().flat_map(|kind| [0.5, 1.0, 1.5].map(|factor| (kind, factor))) {
+                assert_eq!(of(element, along, kind, factor), of(t6, 20, kind, factor), "{element:?} {kind:?} {factor}");
             }
         }
-        let finer = beam(ElementKind::T6, 40);
-        assert_eq!(cells(&finer, ElementKind::T6, 1.0), Some([40, 1]), "a finer scene keeps its own");
+        assert_eq!(of(t6, 40, t6, 1.0), Some([40, 1]), "a finer scene keeps its own");
     }
 }

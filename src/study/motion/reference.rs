@@ -4,62 +4,20 @@ use super::plan::{REFERENCE_MESH, REFERENCE_STEPS, Samples, cells, nodes_of_shap
 use crate::study::fine::finest_element;
 use crate::study::prelude::*;
 use crate::study::reference::{first_probe, system_of};
-
-/// Reference path of the first probe.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[non_exhaustive]
-pub struct MotionReference {
-    /// Time between two points of [`Self::path`], s.
-    pub interval: f64,
-    /// Displacement from rest, m, at 1, 2, … intervals after the start.
-    pub path: Vec<Vector2<f64>>,
-    /// Largest distance of the path from its start, m; errors are relative to it.
-    pub size: f64,
-    /// Own error, percent of the size: a third, according to second-order convergence, of the change of the path with
-    /// steps of twice the length, plus a third of its change with half as many cells in each direction; of a body that is
-    /// not slender, the whole of that change, because its corners let it converge more slowly.
-    pub error_percent: f64,
-    /// Time step, s.
-    pub time_step: f64,
-    /// Element.
-    pub element: ElementKind,
-    /// Cells of the mesh; `None` for the refined mesh of a file.
-    pub cells: Option<[u32; 2]>,
-    /// Duration of the scene, s.
-    pub scene_duration: f64,
-    /// Cells of the studied mesh that is closest to the scene's own; integrators are compared on it.
-    pub own_mesh: Option<[u32; 2]>,
-}
-
-displayed!(MotionReference);
-
-impl From<&MotionReference> for Sentence {
-    fn from(reference: &MotionReference) -> Self {
-        sentence!(
-            "%{integrator} with steps of %{step} on %{mesh} (its own error about %{own})",
-            integrator = IntegratorKind::EnergyMomentum.id(),
-            step = step_text(reference.time_step),
-            mesh = match reference.cells {
-                Some(_) => mesh_text(reference.element, reference.cells),
-                None => sentence!("%{element} on the refined mesh", element = reference.element.id()),
-            },
-            own = percent(reference.error_percent)
-        )
-    }
-}
+use crate::study::trade::StudyReference;
 
 /// Number of elements of a mesh file above which motions on the refined mesh take too long.
 const MAX_ELEMENTS: usize = 4000;
 /// Length of a beam relative to its height from which on its path converges as fast as its mesh.
 const SLENDER: f64 = 5.0;
 
-impl MotionReference {
-    /// Computes the reference for a study of this extent.
-    pub fn new(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self, StudyError> {
+impl StudyReference {
+    /// Computes the reference path of a motion for a study of this extent. Its own error is a third, according to second-order
+    /// convergence, of the change of the path with steps of twice the length, plus a third of its change with half as many
+    /// cells in each direction; of a body that is not slender, the whole of that change, because its corners let it converge
+    /// more slowly.
+    pub(in crate::study) fn of_motion(scene: &Scene, extent: Extent, observe: Observer<'_>) -> Result<Self> {
         scene.validate().map_err(SimulationError::from)?;
-        if scene.analysis != Analysis::Dynamic {
-            return Err(StudyError::AtRest);
-        }
         if scene.probes.is_empty() {
             return Err(StudyError::NoProbe);
         }
@@ -71,48 +29,30 @@ impl MotionReference {
         let paths = parallel::all(&paths, observe, [0.0, 1.0], &now, |((scene, system), steps), observe| {
             fine_path(scene.clone(), system, samples, *steps, observe)
         })?;
-        let [coarser, longer, best] = <[_; 3]>::try_from(paths).unwrap_or_default();
-        let size = best.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        let [coarser, longer, path] = <[_; 3]>::try_from(paths).unwrap_or_default();
+        let size = path.iter().map(|u| u.norm()).fold(0.0, f64::max);
         if size == 0.0 {
             return Err(StudyError::NoProbe);
         }
-        let mut reference = Self {
-            interval: samples.interval,
-            path: best,
-            size,
-            error_percent: 0.0,
-            time_step: samples.interval / f64::from(steps),
-            element: fine.0.element(),
-            cells: fine.0.beam.as_ref().map(|beam| beam.cells),
-            scene_duration: scene.dynamics.duration,
-            own_mesh: cells(scene, finest_element(scene), 1.0),
-        };
+        let (element, cells) = (fine.0.element(), fine.0.beam.as_ref().map(|beam| beam.cells));
+        let (scene_duration, text) = (scene.dynamics.duration, Sentence::default());
+        let mut reference = Self { path, size, error_percent: 0.0, samples, scene_duration, text };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
         let is_slender = slenderness(scene).is_some_and(|ratio| ratio >= SLENDER);
         let part_of_mesh = if is_slender { 1.0 / 3.0 } else { 1.0 };
         reference.error_percent = part_of_mesh * of_mesh + of_step / 3.0;
+        reference.text = sentence!(
+            "%{integrator} with steps of %{step} on %{mesh} (its own error about %{own})",
+            integrator = IntegratorKind::EnergyMomentum.id(),
+            step = step_text(samples.interval / f64::from(steps)),
+            mesh = match cells {
+                Some(_) => mesh_text(element, cells),
+                None => sentence!("%{element} on the refined mesh", element = element.id()),
+            },
+            own = percent(reference.error_percent)
+        );
         Ok(reference)
-    }
-
-    /// Returns the studied time, s.
-    pub fn duration(&self) -> f64 {
-        self.samples().duration()
-    }
-
-    /// Returns the sampling times of the path.
-    pub(in crate::study) fn samples(&self) -> Samples {
-        Samples { interval: self.interval, count: self.path.len() as u32 }
-    }
-
-    /// Returns the largest and the root mean square distance between two paths sampled like the reference, percent of
-    /// the size.
-    pub fn distance(&self, a: &[Vector2<f64>], b: &[Vector2<f64>]) -> [f64; 2] {
-        let distances = a.iter().zip(b).map(|(a, b)| (a - b).norm());
-        let percent = 100.0 / self.size;
-        let squares: f64 = distances.clone().map(|d| d * d).sum();
-        let mean = squares / a.len().min(b.len()).max(1) as f64;
-        [percent * distances.fold(0.0, f64::max), percent * mean.sqrt()]
     }
 }
 
@@ -136,21 +76,17 @@ pub(in crate::study) fn fine_path(
     }
 }
 
-/// Returns the cells of the reference's mesh, for a beam at least as many as its shape requires: on one cell across, the
-/// path converges to another one.
-fn reference_cells(scene: &Scene, element: ElementKind, factor: f64) -> Option<[u32; 2]> {
+/// Returns the scene with half as many cells in each direction, and with the fine mesh, each with its equations. A beam has
+/// at least as many cells as its shape requires: on one cell across, the path converges to another one.
+fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2]> {
     /// Smallest number of nodes along per height, and across.
     const PER_HEIGHT: f64 = 8.0;
     const ACROSS: f64 = 4.0;
-    let (own, least) = (cells(scene, element, factor)?, nodes_of_shape(scene, PER_HEIGHT, ACROSS)?);
-    let pieces = element.entry().degree() as f64;
-    Some([0, 1].map(|i| own[i].max((least[i] / pieces).ceil() as u32)))
-}
-
-/// Returns the scene with half as many cells in each direction, and with the fine mesh, each with its equations.
-fn meshes(scene: &Scene, extent: Extent) -> Result<[(Scene, Arc<System>); 2]> {
     let element = finest_element(scene);
-    let fine = reference_cells(scene, element, extent.pick(REFERENCE_MESH));
+    let pieces = element.entry().degree() as f64;
+    let least = nodes_of_shape(scene, PER_HEIGHT, ACROSS).map(|nodes| nodes.map(|n| (n / pieces).ceil() as u32));
+    let fine = cells(scene, element, extent.pick(REFERENCE_MESH)).zip(least);
+    let fine = fine.map(|(own, least)| [0, 1].map(|i| own[i].max(least[i])));
     let with = |cells| {
         let scene = Setting::newton(element, cells).apply(scene);
         let system = system_of(&scene)?;

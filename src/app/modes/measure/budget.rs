@@ -7,7 +7,7 @@ use crate::app::session::clock::FRAMES;
 use crate::exact_beam::error_percent;
 use crate::plot::{SMALLEST_ERROR, StudyChart, mark};
 use crate::scene::limits::BUDGET_MS;
-use crate::study::{Demand, ErrorSplit, Measurement, Study, StudyReference};
+use crate::study::{Demand, ErrorSplit, Measurement, Setting, Study};
 
 /// The study of the scene, and the largest error and time that a setting may have.
 pub(crate) struct Budget {
@@ -32,7 +32,7 @@ impl Budget {
     /// Starts a study of a scene, and drops the previous one. A setting of the previous study that was applied is measured
     /// among the same settings again: those of a motion are chosen around the mesh and the time step of the scene.
     pub(crate) fn measure(&mut self, scene: &Scene) {
-        let is_setting = |study: &Study| study.measurements.iter().any(|m| m.is_applied_to(scene));
+        let is_setting = |study: &Study| study.measurements.iter().any(|m| m.applied() == Setting::of(scene));
         let known = self.study.known().filter(|(_, study)| self.study.is_of(scene) && is_setting(study));
         self.measured = Some(known.map_or(scene, |(base, _)| base).clone());
         self.study.clear();
@@ -147,7 +147,7 @@ impl BudgetView<'_> {
     }
 
     fn apply(&self, m: &Measurement) -> Action {
-        Action::Edit("Method", Box::new(m.apply(self.scene)))
+        Action::Edit("Method", Box::new(m.applied().apply(self.scene)))
     }
 }
 
@@ -166,7 +166,7 @@ fn frame_ms(m: &Measurement) -> f64 {
 
 /// Returns the settings that meet a demand, fastest first. For a motion, the time is that of a frame.
 fn meeting(study: &Study, demand: Demand) -> Vec<&Measurement> {
-    let frames = if matches!(study.reference, StudyReference::Motion(_)) { FRAMES } else { 1.0 };
+    let frames = if study.moves() { FRAMES } else { 1.0 };
     study.meeting(Demand { max_time_ms: demand.max_time_ms.map(|most| most * frames), ..demand })
 }
 
@@ -195,14 +195,14 @@ fn parts(study: &Study, m: &Measurement) -> String {
     let text = |part: f64| if part == 0.0 { "0 %".to_owned() } else { percent(part) };
     let of = |part: fn(&ErrorSplit) -> f64| text(m.error.as_ref().map_or(0.0, part));
     let (mesh, iteration, theory) = (of(|e| e.discretization), of(|e| e.iteration), of(|e| e.model));
-    if let (StudyReference::Motion(reference), Some(motion)) = (&study.reference, m.motion) {
+    if let Some(motion) = m.motion {
         return fill!(
             "Click to apply. %{unknowns}. Error: mesh %{mesh}, time steps %{steps}, linear theory %{theory}. Drift in %{duration}: %{drift} of the energy put in.",
             unknowns,
             mesh,
             steps = iteration,
             theory,
-            duration = engineering(three_digits(reference.duration()), "s"),
+            duration = engineering(three_digits(study.reference.samples.duration()), "s"),
             drift = drift_text(0.01 * motion.drift_of_input_percent)
         );
     }
@@ -261,7 +261,7 @@ fn settings(
                 (None, Some(study)) => {
                     let parts = tr("Errors: mesh, iteration and theory added up.").to_owned();
                     let coarse = tr("Coarse meshes only: `warpbeam study` measures all.");
-                    tip = fill!("Error against %{reference}.", reference = said(&study.reference));
+                    tip = fill!("Error against %{reference}.", reference = said(&study.reference.text));
                     (if moves { format!("{coarse} {parts}") } else { parts }, None)
                 }
             };
@@ -318,10 +318,10 @@ fn settings(
 /// Shows the settings that meet the demand, fastest first, or those nearest to it, in a list;
 /// a click applies one.
 fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
-    let listed = &budget.listed;
+    let (listed, own) = (&budget.listed, Setting::of(budget.scene));
     let row_height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]);
-    let applied = listed.iter().position(|m| m.is_applied_to(budget.scene));
+    let applied = listed.iter().position(|m| m.applied() == own);
     let id = egui::Id::unique("applied setting");
     let (length, before) = ui.memory_mut(|memory| {
         let last = memory.data.get_temp_mut_or_default::<(usize, Option<usize>)>(id);
@@ -343,8 +343,7 @@ fn list(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
             let text = format!("{:>7}  {bound:>8}{mark} {name}", milliseconds(m));
             let label = ui.add_enabled(
                 budget.current,
-                Button::selectable(m.is_applied_to(budget.scene), RichText::new(text).font(FontId::monospace(12.0)))
-                    .truncate(),
+                Button::selectable(m.applied() == own, RichText::new(text).font(FontId::monospace(12.0))).truncate(),
             );
             let parts = budget.study.map(|study| parts(study, m)).unwrap_or_default();
             if label.on_hover_text(format!("{name}\n{parts}")).clicked() {
@@ -411,7 +410,7 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     drawing.line(&[[left, y], [right, y]], Ink::Limit, 1.0, DASHES);
     drawing.clip(None);
     plot.draw(&mut drawing);
-    let applied = plot.marks.iter().find(|(_, m)| m.is_applied_to(budget.scene)).map(|(at, _)| *at);
+    let applied = plot.marks.iter().find(|(_, m)| m.applied() == Setting::of(budget.scene)).map(|(at, _)| *at);
     if let Some([x, y]) = applied.or(budget.shown.filter(|_| budget.current).map(|shown| plot.place(shown))) {
         drawing.line(&[[x - 9.0, y], [x + 9.0, y]], Ink::Text, 2.0, &[]);
         drawing.line(&[[x, y - 9.0], [x, y + 9.0]], Ink::Text, 2.0, &[]);
@@ -444,7 +443,7 @@ mod tests {
         let scene = open(&Source { name: "article".into(), assignments: Vec::new() }).unwrap();
         let measured = Study::new(&scene, Extent::Quick, &|_| ControlFlow::Continue(())).unwrap();
         let all: Vec<&Measurement> = measured.measurements.iter().filter(|m| m.error.is_some()).collect();
-        let applied = all.iter().find(|m| !m.is_applied_to(&scene)).unwrap().apply(&scene);
+        let applied = all.iter().find(|m| m.applied() != Setting::of(&scene)).unwrap().applied().apply(&scene);
         let mut other = scene.clone();
         other.beam.as_mut().unwrap().cells = [17, 3];
         for (again, base) in [(&other, &other), (&applied, &scene)] {
