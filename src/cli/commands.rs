@@ -1,6 +1,5 @@
 //! Commands without a window.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
