@@ -187,7 +187,7 @@ pub(super) fn curve(args: CurveArgs) -> Result<ExitCode, CliError> {
     let ordinate = of.map_or(Ok(Ordinate::Usual), |name| ordinate(&scene, &name))?;
     outputs.check()?;
     let watch = Watch::new();
-    let path = LoadPath::observed(&scene, &|progress| watch.observe(progress));
+    let path = LoadPath::of(&scene, &|progress| watch.observe(progress));
     let beam = LoadCurve::new(&scene).filter(|_| !watch.is_cancelled());
     drop(watch);
     let no_path = || {

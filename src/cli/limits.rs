@@ -13,7 +13,7 @@ use crate::format::{engineering, percent, three_digits};
 use crate::plot;
 use crate::scene::{self, ElementKind, Scene};
 use crate::study::figure::LoadAxis;
-use crate::study::limits::{GOOD, LimitPoint, MethodLimits, Strip, USABLE, load_text};
+use crate::study::limits::{GOOD, LARGE_OWN, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::{Setting, moved_points};
 
 pub(super) fn limits(args: LimitsArgs) -> Result<ExitCode, CliError> {
@@ -45,7 +45,8 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
         }
         None => {
             let (known, all) = (limits.reference.iter().filter(|(_, u)| u.is_some()).count(), limits.reference.len());
-            let own = limits.large_reference_error_percent();
+            let own = limits.strips.iter().flat_map(|strip| &strip.points).filter_map(|point| point.reference_percent);
+            let own = own.max_by(f64::total_cmp).filter(|own| *own > LARGE_OWN * GOOD);
             let own = own.map_or_else(String::new, |own| format!(", its own error is at most {}", percent(own)));
             let critical =
                 |(element, at): &(ElementKind, Option<f64>)| Some(format!("{} with {}", load((*at)?), element.id()));

@@ -150,11 +150,11 @@ fn hex(ink: Ink) -> String {
         Ink::Paper => [0xff; 3],
         Ink::Text => [0; 3],
         Ink::Grid => [0xdd; 3],
-        Ink::Curve | Ink::Load | Ink::Reference => [0x33; 3],
+        Ink::Load | Ink::Reference => [0x33; 3],
         Ink::Limit => [0x55; 3],
         Ink::Solution([light, _]) => light,
         Ink::Unstable => [0xbe, 0x14, 0x1e],
-        Ink::BeamTheory | Ink::Scene => [0x1c, 0x21, 0x28],
+        Ink::Scene => [0x1c, 0x21, 0x28],
         Ink::Fixed(color) => color,
     };
     format!("#{r:02x}{g:02x}{b:02x}")

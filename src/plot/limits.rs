@@ -27,7 +27,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     // The scene's own load.
     if limits.contains(1.0) {
         let own = chart.axis().place(1.0);
-        drawing.line(&[[own, curve[0]], [own, bottom]], Ink::Curve, 1.0, &[]);
+        drawing.line(&[[own, curve[0]], [own, bottom]], Ink::Text, 1.0, &[]);
         drawing.text([own, curve[0] - 6.0], Anchor::Middle, Ink::Text, "the scene");
     }
     chart.draw(&mut drawing, &ToString::to_string, &|_| Ink::Text);

@@ -35,7 +35,7 @@ pub fn study(study: &Study) -> Drawing {
     if let Some(time) = real_time {
         let ([bottom, top], at) = (frame.up, chart.axes[0].place(time));
         drawing.line(&[[at, top], [at, bottom]], Ink::Limit, WIDTH, DASHES);
-        drawing.text([at, top - 6.0], Anchor::Middle, Ink::Curve, "real time");
+        drawing.text([at, top - 6.0], Anchor::Middle, Ink::Text, "real time");
     }
     chart.draw(&mut drawing);
     key(&mut drawing, &frame, moves);
@@ -83,7 +83,7 @@ impl<'a> StudyChart<'a> {
     pub fn draw(&self, drawing: &mut dyn DrawTarget) {
         let mut front: Vec<_> = self.marks.iter().filter(|(_, m)| m.pareto).map(|(at, _)| *at).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        drawing.line(&front, Ink::Curve, WIDTH, &[]);
+        drawing.line(&front, Ink::Text, WIDTH, &[]);
         for (at, m) in &self.marks {
             let mark = mark(*at, m.setting.element, if m.pareto { 5.5 } else { 3.5 });
             let is_faint = if m.motion.is_some() { m.setting.method == MethodKind::Linear } else { !m.converged };
@@ -112,7 +112,7 @@ fn key(drawing: &mut Drawing, frame: &ChartFrame, moves: bool) {
     }
     let lines: [(&[f64], _); 2] = [(&[], "Pareto front"), (DASHES, "real time")];
     for (dashes, name) in lines.into_iter().take(1 + usize::from(moves)) {
-        drawing.line(&[[x + 12.0, y], [x + 32.0, y]], Ink::Curve, WIDTH, dashes);
+        drawing.line(&[[x + 12.0, y], [x + 32.0, y]], Ink::Text, WIDTH, dashes);
         drawing.text([x + 36.0, y + 4.0], Anchor::Start, Ink::Text, name);
         y += ROW;
     }

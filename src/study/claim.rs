@@ -3,32 +3,13 @@
 
 use super::load_path::{LoadPath, PathSummary};
 use super::prelude::*;
-use super::ranking::Tuning;
 use super::reference::Reference;
-use super::trade::{Measurement, Study};
+use super::trade::Study;
 use super::{LoadCurve, Sample};
 use crate::method::{Bifurcation, Drive, Jump, PathEndReason};
 use crate::simulation::probe_results;
 
 /// Statement of a result, with the numbers that prove it.
-///
-/// ```
-/// use warpbeam::study::Claim;
-/// use warpbeam::{Scene, Simulation};
-///
-/// // A column under three times its critical load, without any imperfection.
-/// let scene = Scene::beam(10.0, 0.5).with_cells(10, 1).with_element(warpbeam::ElementKind::Q4);
-/// let critical = std::f64::consts::PI.powi(2) * 1e6 * 0.5f64.powi(3) / 12.0 / 400.0;
-/// let scene = scene.clamp("left").force("right", [-3.0 * critical, 0.0]);
-/// let mut column = Simulation::new(&scene)?;
-/// column.solve();
-/// let certificate = column.certify();
-/// let path = warpbeam::study::LoadPath::to_result(&column, &|_| std::ops::ControlFlow::Continue(()));
-/// let claims = Claim::of_result(&column, certificate.fixed_point_rho, path.as_ref(), None);
-/// let ids: Vec<&str> = claims.iter().map(|claim| claim.id).collect();
-/// assert_eq!(ids[..4], ["converged", "buckles", "unstable", "helps"]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Claim {
@@ -265,38 +246,6 @@ impl Claim {
             }
         }
     }
-
-    /// Returns the claim about the settings that meet a demand.
-    pub fn of_tuning(tuning: &Tuning) -> Self {
-        let Tuning { chosen, demand, met, study } = tuning;
-        let reason = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
-            (true, true, _) => "the fastest",
-            (true, false, _) => "the most accurate",
-            (false, _, true) => "the most accurate within the time",
-            (false, _, false) => "the fastest of all",
-        };
-        let is_as_accurate = |m: &&Measurement| {
-            let apart = (m.error_percent() - chosen.error_percent()).abs();
-            m.converged && demand.time_is_met(m) && apart < study.own_error_percent
-        };
-        // The setting itself is one of them. The fastest is chosen by its time, which is decided.
-        let as_accurate = match reason.starts_with("the most accurate") {
-            true => study.measurements.iter().filter(is_as_accurate).count(),
-            false => 1,
-        };
-        let undecided = match as_accurate {
-            0 | 1 => String::new(),
-            n => format!(", undecided between {n} whose errors differ by less than the reference's own"),
-        };
-        let ended = study.measurements.iter().filter(|m| m.converged);
-        let meeting = ended.clone().filter(|m| *met && study.meets(m, *demand)).count();
-        let measured = ended.count();
-        let text = match meeting {
-            0 => format!("none of {measured} settings measured here meets {demand}; {reason}{undecided}"),
-            _ => format!("{meeting} of {measured} settings measured here meet {demand}; {reason}{undecided}"),
-        };
-        Self::new("suffices", &[meeting as f64, measured as f64], text)
-    }
 }
 
 impl PathSummary {
@@ -347,7 +296,6 @@ pub fn driven_texts([motion, reaction]: [f64; 2], rotates: bool) -> [String; 2] 
 }
 
 /// Describes ρ in a sentence.
-#[must_use]
 pub fn rho_text(rho: f64) -> Sentence {
     let text = match rho {
         // Near 1, more digits are needed.
@@ -369,7 +317,6 @@ pub fn rho_text(rho: f64) -> Sentence {
 }
 
 /// Explains in a sentence that a solve has ended at the rounding error of its residual.
-#[must_use]
 pub fn floor_text(floor: f64, tolerance: f64) -> Sentence {
     let [floor, tolerance] = [floor, tolerance].map(|v| number(two_digits(v)));
     sentence!(

@@ -18,7 +18,6 @@ const ERRATIC: f64 = 0.75;
 const ROUNDING: f64 = 1e-7;
 /// Number of further halvings covered by the bound if each changes the displacement by the same amount.
 const HALVINGS: f64 = 8.0;
-
 /// Smallest part of the last change, relative to it, that may recur with every halving beside a point.
 const HIDDEN: f64 = 0.25;
 
@@ -86,8 +85,6 @@ fn error_beside_points(steps: &[Vector2<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may fail")]
-
     use super::*;
 
     /// Returns the bound of the last of these displacements.

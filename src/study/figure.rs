@@ -24,20 +24,16 @@ impl FigureQuantity {
 pub enum Ink {
     /// Background.
     Paper,
-    /// Texts.
+    /// Texts, and lines that belong to no series or to beam theory.
     Text,
     /// Lines of a grid.
     Grid,
-    /// Lines of a chart that belong to no series.
-    Curve,
     /// Reference solution.
     Reference,
     /// Line of a limit.
     Limit,
     /// Load of the scene.
     Load,
-    /// Beam theory.
-    BeamTheory,
     /// A method or an integrator: the colours of its entry in the registry.
     Solution([[u8; 3]; 2]),
     /// Unstable equilibria.

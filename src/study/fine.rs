@@ -152,6 +152,7 @@ fn on_fine_meshes(
                 solved = with_errors(&solutions, has_point);
                 finest = Some(simulation);
             }
+            // A finer mesh may have a solution.
             (_, None) => {}
             (Status::Converged, Some(_)) => {
                 for ((u, error), folded) in solved.iter_mut().zip(probes_of(&simulation)) {

@@ -1,8 +1,6 @@
 //! Load path of a static scene: its equilibria while loads and prescribed displacements grow together from zero to
 //! their full values, found by the follower that solves the scene ([`crate::method`]).
 
-use std::ops::ControlFlow;
-
 use super::prelude::*;
 use crate::assembly::{Forces, Kinematics, Problem};
 use crate::continuation::ContinuationPoint;
@@ -123,13 +121,9 @@ const NEXT: f64 = 1.5;
 const SAME: f64 = 0.02;
 
 impl LoadPath {
-    /// Follows the path of a scene. `None` for a motion, for linear theory, and if the scene cannot be simulated.
-    pub fn of(scene: &Scene) -> Option<Self> {
-        Self::observed(scene, &|_| ControlFlow::Continue(()))
-    }
-
-    /// Follows the path as [`Self::of`] with progress reports; a cancelled path ends early.
-    pub fn observed(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
+    /// Follows the path of a scene; a cancelled path ends early. `None` for a motion, for linear theory, and if the scene cannot
+    /// be simulated.
+    pub fn of(scene: &Scene, observe: Observer<'_>) -> Option<Self> {
         let can_be_followed = scene.analysis == Analysis::Static && scene.solver.method != MethodKind::Linear;
         let simulation = can_be_followed.then(|| Simulation::new(scene).ok())??;
         Some(Tracer::new(&simulation)?.trace(1.0, true, observe)?.path)

@@ -20,13 +20,12 @@ impl StudyReference {
             return Self::of_motion(scene, extent, observe);
         }
         let reference = Reference::find(scene, None, Extent::Quick, observe)?;
-        let first = reference.first().ok_or(StudyError::NoBound)?;
+        let first = reference.first().ok_or(StudyError::NoReference)?;
         Ok(Self {
             path: vec![first.displacement],
             size: first.displacement.norm(),
             error_percent: first.own_error_percent,
             samples: motion::Samples { interval: 0.0, count: 1 },
-            scene_duration: 0.0,
             text: (&reference).into(),
         })
     }
@@ -72,7 +71,7 @@ impl Study {
         let mut meshes = if moves { motion::meshes(scene, extent) } else { meshes(scene, extent) };
         // At rest, start with the element that converges fastest, which is likely to give the best results.
         meshes.sort_by_key(|(mesh, _)| !moves && mesh.element != finest_element(scene));
-        Self::begin(scene, extent, observe)?.measure(scene, extent, &meshes, observe, &mut |study, _| {
+        Self::begin(scene, extent, observe)?.measure(scene, extent, &meshes, observe, &mut |study, _, _| {
             partial(study);
             f64::INFINITY
         })
@@ -95,17 +94,17 @@ impl Study {
         extent: Extent,
         meshes: &[(Setting, f64)],
         observe: Observer<'_>,
-        after: &mut dyn FnMut(&Self, &(Setting, f64)) -> f64,
+        after: &mut dyn FnMut(&Self, Setting, f64) -> f64,
     ) -> Result<Self> {
         let all: f64 = meshes.iter().map(|(_, cost)| cost).sum();
         let (mut done, mut most) = (0.0, f64::INFINITY);
-        for mesh in meshes {
-            if mesh.1 > most {
+        for &(mesh, cost) in meshes {
+            if cost > most {
                 break;
             }
             let share = |done: f64| REFERENCE_SHARE + (1.0 - REFERENCE_SHARE) * (done / all);
-            let shares = [share(done), share(done + mesh.1)];
-            let measured = self.measure_on(mesh.0, scene, extent, &|progress| observe(within(progress, shares)));
+            let shares = [share(done), share(done + cost)];
+            let measured = self.measure_on(mesh, scene, extent, &|progress| observe(within(progress, shares)));
             let place = |m: &Measurement| scene.elements().position(|element| element == m.setting.element);
             self.measurements.sort_by_key(place);
             self.rank();
@@ -113,10 +112,10 @@ impl Study {
                 Err(StudyError::Cancelled) if !self.measurements.is_empty() => return Ok(self),
                 measured => measured?,
             }
-            most = most.min(after(&self, mesh));
+            most = most.min(after(&self, mesh, cost));
             // A cancellation is seen by the next mesh.
             let _ = observe(Progress::at(shares[1]));
-            done += mesh.1;
+            done += cost;
         }
         self.is_partial = false;
         Ok(self)

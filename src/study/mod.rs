@@ -31,5 +31,5 @@ pub use progress::{Extent, StudyError};
 pub use ranking::{Demand, Tuning};
 pub use reference::{FOLDS, MAX_CERTIFIED, MovedPoint, ProbeReference, Reference, ReferenceSource, is_unstable};
 pub use setting::{Setting, Stepping};
-pub use timing::{SolveFromRest, time_from_rest, time_of_motion, times_from_rest};
+pub use timing::{time_of_motion, times_from_rest};
 pub use trade::{ErrorSplit, Measurement, MotionFigures, Study, StudyReference};

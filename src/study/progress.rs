@@ -28,10 +28,8 @@ pub enum StudyError {
     },
     /// The equilibrium is unstable.
     Unstable,
-    /// No equilibrium was found on fine meshes.
+    /// No equilibrium was found on fine meshes, or the solutions on finer and finer ones do not converge.
     NoReference,
-    /// The solutions on refined meshes do not converge, or too slowly.
-    NoBound,
     /// The reference solution is not more accurate than the requested result.
     NotKnown {
         /// Bound of the reference's own error, percent.
@@ -60,12 +58,7 @@ impl From<&StudyError> for Sentence {
                 sentence!("no reference solution: the mesh of %{n} elements is too large to be refined", n = *elements)
             }
             StudyError::Unstable => sentence!("no reference solution: the equilibrium is unstable"),
-            StudyError::NoReference => {
-                sentence!("no reference solution: the solution on the fine mesh does not converge")
-            }
-            StudyError::NoBound => {
-                sentence!("no reference solution: the solutions on finer and finer meshes do not converge")
-            }
+            StudyError::NoReference => sentence!("no reference solution: the solutions on fine meshes do not converge"),
             StudyError::NotKnown { own_percent, asked_percent } => sentence!(
                 "the reference solution's own error may be %{own} %, not less than the %{asked} % asked for",
                 own = number(two_digits(*own_percent)),
@@ -79,10 +72,7 @@ impl From<&StudyError> for Sentence {
 impl StudyError {
     /// Returns `true` if the scene is valid, but no sufficiently accurate reference solution exists.
     pub fn is_unknown(&self) -> bool {
-        matches!(
-            self,
-            Self::TooFine { .. } | Self::Unstable | Self::NoReference | Self::NoBound | Self::NotKnown { .. }
-        )
+        matches!(self, Self::TooFine { .. } | Self::Unstable | Self::NoReference | Self::NotKnown { .. })
     }
 }
 
@@ -92,8 +82,7 @@ pub(super) type Result<T, E = StudyError> = std::result::Result<T, E>;
 /// Extent of a study, or of the search for a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Extent {
-    /// The search for a reference while a load is dragged stops at meshes of 3,500 unknowns, within a twentieth of a second.
-    /// A study is the same as a quick one.
+    /// A search for a reference during a drag stops at meshes of 3,500 unknowns, after 50 ms; a study is as a quick one.
     Drag,
     /// A study measures coarse meshes only. A search for a reference stops at meshes of about 10,000 unknowns and the work
     /// of about 30 solves on them, after a second or two.

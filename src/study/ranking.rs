@@ -130,7 +130,7 @@ impl Tuning {
         if let Some(asked_percent) = demand.max_error_percent.filter(|_| !study.can_decide(demand)) {
             return Err(StudyError::NotKnown { own_percent: study.own_error_percent, asked_percent });
         }
-        let study = study.measure(scene, Extent::Full, &meshes, observe, &mut |study, (mesh, cost)| {
+        let study = study.measure(scene, Extent::Full, &meshes, observe, &mut |study, mesh, cost| {
             let is_added = |m: &&Measurement| (m.setting.element, m.setting.cells) == (mesh.element, mesh.cells);
             let added = study.measurements.iter().filter(is_added);
             let fastest = added.clone().map(|m| m.milliseconds).fold(f64::INFINITY, f64::min);

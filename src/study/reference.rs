@@ -49,7 +49,6 @@ pub struct ProbeReference {
 impl ProbeReference {
     /// Returns the distance of a result from the reference, percent of the reference's displacement. The exact error
     /// differs from it by at most [`Self::own_error_percent`].
-    #[must_use]
     pub fn error_percent(&self, result: &ProbeResult) -> Option<f64> {
         error_percent(result.u, self.displacement)
     }
@@ -60,13 +59,11 @@ impl ProbeReference {
     }
 
     /// Returns the distance between two displacements, percent of the reference's displacement.
-    #[must_use]
     pub fn percent(&self, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
         100.0 * (a - b).norm() / self.displacement.norm()
     }
 
     /// Describes the reference's own error: `its own error at most 0.012 %`.
-    #[must_use]
     pub fn own_error(&self) -> String {
         format!("its own error at most {} %", number(two_digits(self.own_error_percent)))
     }
@@ -133,22 +130,21 @@ pub struct Reference {
     pub unknowns: usize,
 }
 
-/// Returns the reason for which a displacement of a scene with this bound of its error, m, has no reference, if it has none;
-/// `largest` is the largest displacement of the body, m.
-fn missing(scene: &Scene, displacement: Vector2<f64>, error: Option<f64>, largest: f64) -> Sentence {
+/// Returns the reason for which a displacement of a scene, m, has no reference, if it has none; `largest` is the largest
+/// displacement of the body, m.
+fn missing(scene: &Scene, displacement: Vector2<f64>, largest: f64) -> Sentence {
     /// Displacement relative to the largest one that is only rounding error.
     const ROUNDING: f64 = 1e-9;
-    match error {
+    match scene.acts_on_points() {
         _ if displacement.norm() <= ROUNDING * largest => {
             sentence!("no reference solution: the probe does not move")
         }
-        _ if scene.acts_on_points() => sentence!(
+        true => sentence!(
             "no reference solution: under a point the displacement grows without limit on finer meshes; give the \
              support or force there a width"
         ),
-        None => sentence!("no reference solution: finer and finer meshes give no bound of its error at the probe"),
-        Some(_) => sentence!(
-            "no reference solution: its error at the probe may be more than %{percent} %",
+        false => sentence!(
+            "no reference solution: finer and finer meshes show no error at the probe below %{percent} %",
             percent = number(LARGEST_OWN_ERROR)
         ),
     }
@@ -192,7 +188,7 @@ impl Reference {
             let [a, b] = side.ends().map(|n| mesh.node(n));
             side.nodes().iter().all(|&n| (b - a).perp(&(mesh.node(n) - a)).abs() <= STRAIGHT * (b - a).norm_squared())
         };
-        let missing = |&(u, error): &_| missing(scene, u, error, largest(displacement));
+        let missing = |&(u, _): &_| missing(scene, u, largest(displacement));
         let mut reference = Self {
             probes: solved.iter().map(|&(u, error)| probe(u, error?, source)).collect(),
             missing: solved.first().map(missing).unwrap_or_default(),
@@ -236,7 +232,6 @@ impl Reference {
 
     /// Returns the closed outlines of the body with a multiple of its displacement, m; none if no bound of the first probe's
     /// error is known.
-    #[must_use]
     pub fn outline(&self, magnification: f64) -> Vec<Vec<Vector2<f64>>> {
         let DeformedBody { rest, displacements, outline, .. } = &self.body;
         let place = |&n: &u32| rest[n as usize] + displacements[n as usize] * magnification;
@@ -246,7 +241,6 @@ impl Reference {
     /// Returns the displacement at material points with these rest positions, m; `None` outside the body, and everywhere if
     /// there is no outline. Points that are outside by a little, as on a curved side, have the displacement of the nearest
     /// triangle, continued.
-    #[must_use]
     pub fn displacements_at(&self, points: &[Vector2<f64>]) -> Vec<Option<Vector2<f64>>> {
         /// Largest distance outside a triangle, relative to its height.
         const OUTSIDE: f64 = 0.5;
@@ -280,13 +274,11 @@ impl Reference {
 
     /// Returns the references of the probes, in the scene's order; `None` if a probe does not move, or no bound of its
     /// error is known.
-    #[must_use]
     pub fn probes(&self) -> &[Option<ProbeReference>] {
         &self.probes
     }
 
     /// Returns sentences about limitations of the reference.
-    #[must_use]
     pub fn limits(&self) -> Vec<String> {
         let limits = [
             (self.folds, FOLDS),
@@ -305,7 +297,6 @@ impl Reference {
     }
 
     /// Returns the reference of the first probe, by which settings are compared.
-    #[must_use]
     pub fn first(&self) -> Option<ProbeReference> {
         self.probes.first().copied().flatten()
     }

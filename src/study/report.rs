@@ -66,19 +66,15 @@ impl Study {
         if !self.moves() {
             return format!("{}: error of the first probe against {}\n\n{costs}", self.scene, reference.text);
         }
-        let (duration, lasts) = (reference.samples.duration(), reference.scene_duration);
         let mut text = format!(
             "{}: error of the first probe's path: largest distance over {} s, percent of its largest displacement \
              {:.4} m,\nagainst {}\n",
             self.scene,
             // The duration is a sum of steps.
-            number((duration * 1e6).round() / 1e6),
+            number((reference.samples.duration() * 1e6).round() / 1e6),
             reference.size,
             reference.text
         );
-        if duration < lasts * (1.0 - 1e-6) {
-            let _ = writeln!(text, "(the scene lasts {} s; the rest is not measured)", number(lasts));
-        }
         text += &format!("\n{costs}");
         let unfinished = self.measurements.iter().filter(|m| !m.converged).count();
         if unfinished > 0 {
@@ -149,9 +145,24 @@ impl Study {
 
 impl std::fmt::Display for Tuning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { chosen, study, .. } = self;
+        let Self { chosen, demand, met, study } = self;
         writeln!(f, "{}: error of the first probe against {}", study.scene, study.reference.text)?;
-        writeln!(f, "{}:", Claim::of_tuning(self))?;
+        let reason = match (met, demand.max_error_percent.is_some(), demand.time_is_met(chosen)) {
+            (true, true, _) => "the fastest",
+            (true, false, _) => "the most accurate",
+            (false, _, true) => "the most accurate within the time",
+            (false, _, false) => "the fastest of all",
+        };
+        let undecided = match chosen.undecided && reason.starts_with("the most accurate") {
+            true => ", undecided: the errors of faster ones differ by less than the reference's own",
+            false => "",
+        };
+        let ended = study.measurements.iter().filter(|m| m.converged);
+        let meeting = match ended.clone().filter(|m| *met && study.meets(m, *demand)).count() {
+            0 => format!("none of {} settings measured here meets", ended.count()),
+            n => format!("{n} of {} settings measured here meet", ended.count()),
+        };
+        writeln!(f, "{meeting} {demand}; {reason}{undecided}:")?;
         let cost = |m: &Measurement| {
             let bound = study.error_bound(m);
             format!("{}: {:.4} ms, error at most {bound:.4} %", m.setting, m.milliseconds)
@@ -165,7 +176,7 @@ impl std::fmt::Display for Tuning {
                 study.own_error_percent
             )?;
         }
-        let asked = self.demand.max_error_percent.filter(|_| !self.met);
+        let asked = demand.max_error_percent.filter(|_| !met);
         let within = asked.map_or_else(Vec::new, |percent| study.within(percent));
         match within.into_iter().find(|m| m.converged) {
             Some(other) => write!(f, "\nthe fastest within the error:\n  {}", cost(other)),

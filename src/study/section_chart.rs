@@ -84,7 +84,7 @@ pub fn stress(section: &Section, scene: &Scene, contexts: &[Context; 3], render:
         let method = Ink::of(&Setting::of(scene));
         let mut series = vec![
             series(names[0], method, Mark::Line, recovered.collect()),
-            series(names[1], Ink::BeamTheory, Mark::Dashes, beam()),
+            series(names[1], Ink::Text, Mark::Dashes, beam()),
         ];
         series.retain(|series| series.points.iter().any(|point| point.iter().all(|value| value.is_finite())));
         series.extend(COMPONENTS.iter().zip(contexts).map(|(SectionComponent { symbol, unit, of, .. }, within)| {

@@ -88,10 +88,8 @@ impl From<&Setting> for Sentence {
         let solves = match (iterations, integrator.stages > 1) {
             _ if integrator.is_explicit() => sentence!("no solve"),
             (0, _) => sentence!("to tolerance"),
-            (n @ 1, true) => sentence!("%{n} solve a stage", n),
-            (n @ 1, false) => sentence!("%{n} solve a step", n),
-            (n, true) => sentence!("%{n} solves a stage", n),
-            (n, false) => sentence!("%{n} solves a step", n),
+            (n, true) => sentence!("%{solves} a stage", solves = Self::count(n, "solve")),
+            (n, false) => sentence!("%{solves} a step", solves = Self::count(n, "solve")),
         };
         sentence!(
             "%{mesh}, %{theory}, %{integrator}, %{step}, %{solves}",

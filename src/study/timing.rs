@@ -2,12 +2,10 @@
 
 use std::sync::Mutex;
 
-use serde::{Deserialize, Serialize};
 use web_time::{Duration, Instant};
 
 use super::motion::Samples;
 use super::prelude::*;
-use super::reference::first_probe;
 
 /// Repetitions that warm up caches, branch predictors and clocks.
 const WARM_UP: usize = 2;
@@ -24,40 +22,6 @@ const COARSE_CLOCK: Option<Duration> =
     if cfg!(target_arch = "wasm32") { Some(Duration::from_millis(100)) } else { None };
 /// Held while solves are timed: two timed at once would slow each other down.
 static TIMED: Mutex<()> = Mutex::new(());
-
-/// Time and result of a solve from rest.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct SolveFromRest {
-    /// Median times of repeated solves.
-    pub timings: Timings,
-    /// Number of iterations.
-    pub iterations: u32,
-    /// `true` if it ends with a result.
-    pub is_solved: bool,
-    /// Displacement of the first probe at the end, m; `None` if the scene has no probe.
-    pub displacement: Option<Vector2<f64>>,
-}
-
-/// Times the solve of a scene from rest; returns `None` for a motion, and if the scene cannot be solved or the
-/// computation is cancelled.
-pub fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
-    let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
-    // Without a load there is no iteration.
-    let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop().unwrap_or_default();
-    Some(SolveFromRest { timings, ..SolveFromRest::of(&simulation) })
-}
-
-impl SolveFromRest {
-    /// Returns time and result of a simulation that has been solved from rest.
-    pub(crate) fn of(simulation: &Simulation) -> Self {
-        Self {
-            timings: *simulation.timings(),
-            iterations: simulation.iterations(),
-            is_solved: simulation.status().is_success(),
-            displacement: first_probe(simulation).ok(),
-        }
-    }
-}
 
 /// Returns the times from rest to the end of each of the first `iterations` iterations; fewer if the solve ends before,
 /// `None` if the computation is cancelled.

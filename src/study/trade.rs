@@ -141,8 +141,6 @@ pub struct StudyReference {
     pub error_percent: f64,
     /// Sampling times; their interval is 0 at rest.
     pub samples: Samples,
-    /// Duration of the scene, s.
-    pub scene_duration: f64,
     /// Origin and own error in words.
     pub text: Sentence,
 }

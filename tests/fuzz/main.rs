@@ -265,7 +265,7 @@ fn paths_are_followed_or_refused() {
                 Err(_) => ControlFlow::Break(()),
             }
         };
-        if let Some(path) = LoadPath::observed(&scene, &watched()) {
+        if let Some(path) = LoadPath::of(&scene, &watched()) {
             let states = path.states.iter().flat_map(|state| {
                 let reactions = state.reactions.iter().flat_map(|r| [r.force.x, r.force.y, r.moment]);
                 state.probes.iter().flat_map(|u| [u.x, u.y]).chain(reactions).chain([state.factor])

@@ -246,7 +246,7 @@ fn claims_near_critical_loads_are_true() {
                 let crown = [0.5 * slenderness, rise + 0.5];
                 let arch = beam.clamp("left").clamp("right").probe("crown", Place::from(crown));
                 let moved = arch.clone().support(crown, &[Axis::Y]).moved([0.0, -2.0 * rise], 0.0);
-                let path = LoadPath::of(&moved).unwrap();
+                let path = LoadPath::of(&moved, &go_on).unwrap();
                 let of_path = Claim::of_path(&moved, &path);
                 // A buckling arch leaves this path.
                 let limit = stated(&of_path, "limit_load").filter(|_| path.is_plain());

@@ -29,7 +29,7 @@ fn columns_buckle_at_eulers_loads() {
         ("pinned", pinned, 3.0, &[2.0457]),
     ] {
         for element in ElementKind::all().filter(|&e| e != ElementKind::T3) {
-            let path = LoadPath::of(&column(part, hold).with_element(element)).unwrap();
+            let path = LoadPath::of(&column(part, hold).with_element(element), &go_on).unwrap();
             let words = format!("{name} {part} {element:?}: {:?}, {:?}", path.bifurcations, path.jump);
             assert!(path.end.is_none() && path.jump.is_none(), "{words}");
             assert_eq!(path.bifurcations.len(), factors.len(), "{words}");
@@ -46,15 +46,15 @@ fn columns_buckle_at_eulers_loads() {
         }
     }
     // Below the critical load, or with a side load, the column does not buckle.
-    assert_eq!(LoadPath::of(&column(0.2, free)).unwrap().bifurcations, []);
-    assert_eq!(LoadPath::of(&column(0.4, free).force("right", [0.0, 0.3])).unwrap().bifurcations, []);
+    assert_eq!(LoadPath::of(&column(0.2, free), &go_on).unwrap().bifurcations, []);
+    assert_eq!(LoadPath::of(&column(0.4, free).force("right", [0.0, 0.3]), &go_on).unwrap().bifurcations, []);
 }
 
 #[test]
 fn a_cancelled_path_is_reported_as_interrupted() {
     let asked = AtomicU32::new(0);
     let scene = scene("jump");
-    let path = LoadPath::observed(&scene, &|_| {
+    let path = LoadPath::of(&scene, &|_| {
         if asked.fetch_add(1, Ordering::Relaxed) < 19 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     let path = path.unwrap();

@@ -14,7 +14,7 @@ fn solve(name: &str, set: &[String]) -> Value {
 /// Follows the path of a scene with assignments.
 fn path(name: &str, set: &[String]) -> (Scene, LoadPath) {
     let scene = scene_with(&file(name), &set.iter().map(String::as_str).collect::<Vec<_>>());
-    let path = LoadPath::of(&scene).unwrap();
+    let path = LoadPath::of(&scene, &go_on).unwrap();
     (scene, path)
 }
 

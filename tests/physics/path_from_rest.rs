@@ -92,11 +92,12 @@ fn a_steep_path_is_no_jump() {
         ("elastica", [-500.0, -0.005]),
         ("elastica", [-1000.0, -0.01]),
     ] {
-        let path = LoadPath::of(&scene_with(id, &[&format!("load.0.force=[{},{}]", force[0], force[1])])).unwrap();
+        let path =
+            LoadPath::of(&scene_with(id, &[&format!("load.0.force=[{},{}]", force[0], force[1])]), &go_on).unwrap();
         assert_eq!((path.jump, path.end), (None, None), "{id} {force:?}");
         assert!(path.bifurcations.is_empty() && path.states.iter().all(|s| s.stable == Some(true)), "{id} {force:?}");
     }
-    let path = LoadPath::of(&file_scene("shortened-column")).unwrap();
+    let path = LoadPath::of(&file_scene("shortened-column"), &go_on).unwrap();
     assert_eq!((path.jump, path.end), (None, None));
 }
 
@@ -109,7 +110,7 @@ fn an_arch_snaps_at_its_limit_load() {
         assert!(json["status"] == "converged" && json["stable"] == true && json["jumped"] == true, "{force}: {json}");
         let limit = -force * json["jumped_at"].as_f64().unwrap();
         assert!((limit - 80.87).abs() < 0.01, "{force}: {limit} N");
-        let path = LoadPath::of(&scene_with("jump", &[&set])).unwrap();
+        let path = LoadPath::of(&scene_with("jump", &[&set]), &go_on).unwrap();
         let jump = path.jump.unwrap();
         assert!((-force * jump.factor - 80.87).abs() < 0.01 && path.end.is_none(), "{force}: {jump:?}");
         let crown = json["probes"][0]["u"][1].as_f64().unwrap();
@@ -121,10 +122,10 @@ fn an_arch_snaps_at_its_limit_load() {
     for support in &mut moved.supports {
         support.displacement = [1.0, 0.0];
     }
-    let path = LoadPath::of(&moved).unwrap();
+    let path = LoadPath::of(&moved, &go_on).unwrap();
     assert!(path.jump.is_some_and(|jump| jump.distance.is_some_and(|d| d > 0.009 && d < 0.012)), "{:?}", path.jump);
     // Below its limit load the arch does not snap.
-    assert_eq!(LoadPath::of(&scene_with("jump", &["load.0.force=[0,-80.8]"])).unwrap().jump, None);
+    assert_eq!(LoadPath::of(&scene_with("jump", &["load.0.force=[0,-80.8]"]), &go_on).unwrap().jump, None);
 }
 
 /// The largest reaction of a moving support is located to four digits, wherever the states of the path are.
@@ -245,7 +246,7 @@ fn an_impossible_load_is_not_followed_further() {
     assert_eq!(output.status.code(), Some(1));
     assert!(text.contains("no stable equilibrium was found beyond"), "{text}");
     assert!(!text.contains("may help") && !text.contains("lower the load") && !text.contains("inf"), "{text}");
-    let path = LoadPath::of(&file_scene("stubby-moment")).unwrap();
+    let path = LoadPath::of(&file_scene("stubby-moment"), &go_on).unwrap();
     let (factor, reason) = path.end.unwrap();
     assert!(reason == PathEndReason::NoEquilibrium && factor > 0.1 && factor < 1.0, "{factor} {reason:?}");
 }
@@ -291,7 +292,7 @@ fn a_descent_passes_a_folded_element() {
         let scene = scene.with_material(Material::new(1e6, 0.3)).clamp("left").moved([0.0; 2], turn);
         let mut scene = scene.point_support(at, &[Axis::X, Axis::Y]).probe("end", "right");
         scene.solver.max_iterations = 6000;
-        let path = LoadPath::of(&scene).unwrap();
+        let path = LoadPath::of(&scene, &go_on).unwrap();
         let jump = path.jump.unwrap();
         assert!(path.end.is_none() && (jump.factor - limit).abs() < 1e-4, "{:?} {jump:?}", path.end);
         assert!(jump.distance.is_some_and(|d| d > 5.0), "{jump:?}");

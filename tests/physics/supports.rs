@@ -232,7 +232,7 @@ fn other_starts_and_stiffnesses_end_in_the_same_place() {
 #[test]
 fn the_arch_passes_its_limit_load() {
     let scene = scene("snap");
-    let path = LoadPath::of(&scene).unwrap();
+    let path = LoadPath::of(&scene, &go_on).unwrap();
     assert!(path.end.is_none() && path.jump.is_none());
     let pairs: Vec<[f64; 2]> = path.states.iter().map(|s| path.driven_pair(&scene, s).unwrap()).collect();
     // A parabola through the three highest points.

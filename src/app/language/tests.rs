@@ -81,7 +81,7 @@ fn the_sentences_of_the_library_are_translated() {
         name.to_string()
     };
     for id in ["snap", "jump"] {
-        let path = LoadPath::of(&open(id)).unwrap();
+        let path = LoadPath::of(&open(id), &|_| std::ops::ControlFlow::Continue(())).unwrap();
         let _ = path_chart::figure(&path, &open(id), &path_chart::Ordinate::Usual, &render);
     }
     let scene = open("cantilever");

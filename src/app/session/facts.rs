@@ -16,8 +16,7 @@ use crate::scene::{DynamicsSettings, SolverSettings};
 use crate::simulation::Equilibrium;
 use crate::study::limits::MethodLimits;
 use crate::study::{
-    Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, SolveFromRest, Study, StudyError, time_from_rest,
-    time_of_motion,
+    Extent, LoadCurve, LoadPath, MAX_CERTIFIED, PathFromRest, Study, StudyError, time_of_motion, times_from_rest,
 };
 
 /// Load–displacement curve of a scene at rest.
@@ -74,7 +73,7 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
             n = number(MAX_CURVE_UNKNOWNS as f64)
         ));
     }
-    let (path, beam) = (LoadPath::observed(scene, observe), LoadCurve::new(scene));
+    let (path, beam) = (LoadPath::of(scene, observe), LoadCurve::new(scene));
     let has_curve = path.is_some() || beam.is_some();
     let curve = || Curve { scene: SentScene(scene.clone()), path: path.unwrap_or_default(), beam };
     Ok(has_curve.then(curve))
@@ -165,6 +164,40 @@ fn fixed_point_rho(scene: &Scene, observe: Observer<'_>) -> Option<f64> {
         return None;
     }
     simulation.certify().fixed_point_rho.filter(|_| simulation.status().is_success())
+}
+
+/// Time and result of a solve from rest.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct SolveFromRest {
+    /// Median times of repeated solves.
+    pub timings: Timings,
+    /// Number of iterations.
+    pub iterations: u32,
+    /// `true` if it ends with a result.
+    pub is_solved: bool,
+    /// Displacement of the first probe at the end, m; `None` if the scene has no probe.
+    pub displacement: Option<Vector2<f64>>,
+}
+
+impl SolveFromRest {
+    /// Returns time and result of a simulation that has been solved from rest.
+    fn of(simulation: &Simulation) -> Self {
+        Self {
+            timings: *simulation.timings(),
+            iterations: simulation.iterations(),
+            is_solved: simulation.status().is_success(),
+            displacement: first_probe(simulation),
+        }
+    }
+}
+
+/// Times the solve of a scene from rest; returns `None` for a motion, and if the scene cannot be solved or the
+/// computation is cancelled.
+fn time_from_rest(scene: &Scene, observe: Observer<'_>) -> Option<SolveFromRest> {
+    let mut simulation = Simulation::new(scene).ok().filter(|simulation| simulation.motion().is_none())?;
+    // Without a load there is no iteration.
+    let timings = times_from_rest(&mut simulation, u32::MAX, observe)?.pop().unwrap_or_default();
+    Some(SolveFromRest { timings, ..SolveFromRest::of(&simulation) })
 }
 
 /// Returns the displacement of a body's first probe, m.

@@ -19,13 +19,13 @@ use crate::app::prelude::*;
 use crate::app::session::background::Background;
 use crate::app::session::document::Document;
 pub(crate) use crate::app::session::edit::{Changed, Edit, UndoHistory, Version, object_name};
-use crate::app::session::facts::{Facts, Live};
+use crate::app::session::facts::{Facts, Live, SolveFromRest};
 use crate::app::session::fallback::{Fallback, is_lost};
 use crate::app::session::playback::Playback;
 use crate::app::task::solve::{MAX_UNKNOWNS, Model, solve_linear};
 use crate::mesh::MaterialPoint;
 use crate::state::State;
-use crate::study::{PathSummary, SolveFromRest, StudyError, is_unstable};
+use crate::study::{PathSummary, StudyError, is_unstable};
 use crate::timings::Timings;
 
 /// Time of iterations after which a displayed frame makes no more.

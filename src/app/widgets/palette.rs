@@ -93,7 +93,7 @@ impl Palette {
         let fixed = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
         match ink {
             Ink::Paper => self.canvas,
-            Ink::Text | Ink::Curve | Ink::BeamTheory | Ink::Scene => self.text,
+            Ink::Text | Ink::Scene => self.text,
             Ink::Grid => self.line,
             Ink::Reference => self.exact,
             Ink::Limit => self.secondary,

@@ -96,7 +96,7 @@ pub struct Atlas {
     /// Heading of the names of methods or integrators.
     names: &'static str,
     /// Quantity that the columns of the picture differ in.
-    pub(crate) columns: &'static str,
+    pub columns: &'static str,
     /// Header of the CSV file, without line break.
     header: &'static str,
     /// Cases.

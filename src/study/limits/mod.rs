@@ -26,7 +26,7 @@ pub const GOOD: f64 = 1.0;
 /// Error, percent, up to which a result counts as usable.
 pub const USABLE: f64 = 5.0;
 /// Ratio of the reference's own error to a limit from which on it may hide if an error is within the limit.
-const LARGE_OWN: f64 = 0.5;
+pub const LARGE_OWN: f64 = 0.5;
 /// Ratio of two loads between which a change is not sought any more.
 const FINE: f64 = 1.01;
 /// Largest number of loads of a strip that are added to find where its results change.
@@ -345,12 +345,6 @@ pub struct MethodLimits {
 }
 
 impl MethodLimits {
-    /// Returns the largest error of the reference solution, percent, if it decides about a rating of [`GOOD`].
-    pub fn large_reference_error_percent(&self) -> Option<f64> {
-        let errors = self.strips.iter().flat_map(|strip| &strip.points).filter_map(|point| point.reference_percent);
-        errors.max_by(f64::total_cmp).filter(|error| *error > LARGE_OWN * GOOD)
-    }
-
     /// Returns the part of the load at which the load path from rest buckles or jumps on the scene's mesh.
     pub fn critical(&self) -> Option<f64> {
         self.criticals.first()?.1
@@ -382,10 +376,9 @@ impl MethodLimits {
     /// Returns `true` if a part of the scene's loads, or of its time step, is in the range of the limits: that of a very
     /// short time step is not.
     pub fn contains(&self, factor: f64) -> bool {
-        /// Relative rounding error of a factor with three digits.
-        const ROUNDING: f64 = 1e-2;
         let [low, high] = self.range;
-        (low * (1.0 - ROUNDING)..=high * (1.0 + ROUNDING)).contains(&factor)
+        // A factor has three digits.
+        (0.99 * low..=1.01 * high).contains(&factor)
     }
 
     /// Computes the limits of a scene with a probe, on the scene's cells. The reference solution is that of

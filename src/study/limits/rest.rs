@@ -69,7 +69,7 @@ pub(super) fn limits(
 /// A scene at rest, and what its strips share.
 struct AtRest<'a> {
     scene: &'a Scene,
-    /// System of each element, that of the scene first.
+    /// System of each element, which its methods share; that of the scene first.
     systems: Vec<(ElementKind, Arc<System>)>,
     /// References under parts of the load, each computed once.
     references: Mutex<Vec<KnownReference>>,

@@ -20,7 +20,7 @@ mod reference;
 /// Number of steps after which the time of a shortened motion is known.
 const MIN_STEPS: u32 = 500;
 /// Approximate fraction of a mesh's time spent before its settings are timed.
-const FIRST_RUNS_SHARE: f64 = 0.35;
+const FIRST_SHARE: f64 = 0.35;
 
 /// Measures every setting on a mesh. A cancelled measurement keeps its results.
 pub(super) fn measure(
@@ -38,8 +38,7 @@ pub(super) fn measure(
     // The untimed part, path, energy and counts, runs first on all cores, so that the timed part runs alone on the machine.
     // A long motion is shortened.
     let now = sentence!("%{mesh}, paths of its settings", mesh = mesh_text(mesh.element, mesh.cells));
-    let to = FIRST_RUNS_SHARE;
-    let first = parallel::all(&settings, observe, [0.0, to], &now, |&(setting, steps_of_sample), observe| {
+    let first = parallel::all(&settings, observe, [0.0, FIRST_SHARE], &now, |&(setting, steps_of_sample), observe| {
         let mut simulation = Simulation::with_system(&setting.apply(scene), system.clone())?;
         let steps = u64::from(steps_of_sample) * u64::from(samples.count);
         let is_cut = steps > u64::from(extent.pick(MAX_STEPS));
@@ -65,7 +64,7 @@ pub(super) fn measure(
     for (done, (measurement, steps)) in first.into_iter().enumerate() {
         let now = (&measurement.setting).into();
         let progress = Progress { fraction: done as f64 / count, now: Some(&now) };
-        check(observe(within(progress, [FIRST_RUNS_SHARE, 1.0])))?;
+        check(observe(within(progress, [FIRST_SHARE, 1.0])))?;
         let mut simulation = Simulation::with_system(&measurement.setting.apply(scene), system.clone())?;
         let go_on: Observer<'_> = &|_| ControlFlow::Continue(());
         let milliseconds = milliseconds_per_second(&mut simulation, steps, extent.pick(TIMING), go_on);

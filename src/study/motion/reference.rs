@@ -35,8 +35,7 @@ impl StudyReference {
             return Err(StudyError::NoProbe);
         }
         let (element, cells) = (fine.0.element(), fine.0.beam.as_ref().map(|beam| beam.cells));
-        let (scene_duration, text) = (scene.dynamics.duration, Sentence::default());
-        let mut reference = Self { path, size, error_percent: 0.0, samples, scene_duration, text };
+        let mut reference = Self { path, size, error_percent: 0.0, samples, text: Sentence::default() };
         let [of_mesh, _] = reference.distance(&coarser, &longer);
         let [of_step, _] = reference.distance(&longer, &reference.path);
         let is_slender = slenderness(scene).is_some_and(|ratio| ratio >= SLENDER);

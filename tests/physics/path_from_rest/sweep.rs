@@ -81,7 +81,7 @@ fn scene(seed: u64) -> Scene {
 fn differences(scene: &Scene) -> (Vec<String>, String) {
     let (mut wrong, mut note) = (Vec::new(), String::new());
     let mut simulation = Simulation::new(&scene.clone().with_method(MethodKind::Newton)).unwrap();
-    let Some(path) = LoadPath::of(scene) else { return (vec!["no path".to_owned()], note) };
+    let Some(path) = LoadPath::of(scene, &go_on) else { return (vec!["no path".to_owned()], note) };
     let is_solved = *simulation.solve() == Status::Converged;
     note += &format!("{} iterations", simulation.iterations());
     if is_solved != path.end.is_none() {

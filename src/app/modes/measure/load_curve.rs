@@ -84,7 +84,7 @@ impl Curve {
         let LoadAxis { unit, full, .. } = LoadAxis::of(scene);
         let point = |s: &Sample, u: Vector2<f64>| vec![s.factor * full, u.x, u.y];
         let mut add = |name: String, mark, may_leave, points, value: Option<String>| {
-            let series = FigureSeries::new(name, Ink::BeamTheory, mark, points);
+            let series = FigureSeries::new(name, Ink::Text, mark, points);
             figure.series.push(FigureSeries { may_leave, value, ..series });
         };
         let samples = beam.samples.iter();
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn the_mark_of_the_scene_is_at_the_body() {
         let scene = open(&Source { name: "jump".into(), assignments: Vec::new() }).unwrap();
-        let path = LoadPath::of(&scene).unwrap();
+        let path = LoadPath::of(&scene, &|_| std::ops::ControlFlow::Continue(())).unwrap();
         let curve = Curve { path, scene: SentScene(scene), beam: None };
         let before = curve.figure(Ordinate::Component(0, 1));
         let mut after = before.clone();
