@@ -11,7 +11,7 @@ use super::progress::watched;
 use super::{CliError, about, json, text, validated};
 use crate::format::{engineering, percent, three_digits};
 use crate::plot;
-use crate::scene::{self, ElementKind, Scene};
+use crate::scene::{self, Scene};
 use crate::study::figure::LoadAxis;
 use crate::study::limits::{GOOD, LARGE_OWN, LimitPoint, MethodLimits, Strip, USABLE, load_text};
 use crate::study::{Setting, moved_points};
@@ -48,9 +48,8 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
             let own = limits.strips.iter().flat_map(|strip| &strip.points).filter_map(|point| point.reference_percent);
             let own = own.max_by(f64::total_cmp).filter(|own| *own > LARGE_OWN * GOOD);
             let own = own.map_or_else(String::new, |own| format!(", its own error is at most {}", percent(own)));
-            let critical =
-                |(element, at): &(ElementKind, Option<f64>)| Some(format!("{} with {}", load((*at)?), element.id()));
-            let criticals: Vec<String> = limits.criticals.iter().filter_map(critical).collect();
+            let found = limits.criticals.iter().filter_map(|(element, at)| Some((element.id(), (*at)?)));
+            let criticals: Vec<String> = found.map(|(element, at)| format!("{} with {element}", load(at))).collect();
             let criticals = match criticals.join(", ").as_str() {
                 "" => String::new(),
                 all => format!("critical load of this mesh, where the path from rest buckles or jumps: {all}\n"),
@@ -64,8 +63,7 @@ fn summary(limits: &MethodLimits, scene: &Scene) -> String {
         let [good, usable, converges, law] = strip.words(&axis).map(|words| words.to_string());
         [strip.name(str::to_owned), good, usable, converges, law]
     };
-    let rows: Vec<[String; 5]> =
-        std::iter::once(head.map(str::to_owned)).chain(limits.strips.iter().map(row)).collect();
+    let rows: Vec<_> = std::iter::once(head.map(str::to_owned)).chain(limits.strips.iter().map(row)).collect();
     let width = |i: usize| rows.iter().map(|row| row[i].chars().count()).fold(if i == 0 { 11 } else { 15 }, usize::max);
     for [name, cells @ ..] in &rows {
         let _ = write!(text, "{name:<width$}", width = width(0));
@@ -85,8 +83,7 @@ fn table(limits: &MethodLimits) -> String {
         for point in strip.points.iter().filter(|point| point.is_compared) {
             let LimitPoint { factor, displacement, inverted_elements, .. } = point;
             let error = point.error_percent.map_or_else(String::new, |error| error.to_string());
-            let max_strain = point.max_strain.unwrap_or_default();
-            let [x, y]: [f64; 2] = (*displacement).into();
+            let ([x, y], max_strain) = (<[f64; 2]>::from(*displacement), point.max_strain.unwrap_or_default());
             let _ = writeln!(text, "{name},{},{x},{y},{error},{max_strain},{inverted_elements}", factor * unit);
         }
     }

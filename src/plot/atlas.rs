@@ -10,7 +10,7 @@ const CELL: [f64; 2] = [52.0, 20.0];
 /// Draws an atlas: a panel for every element and method or integrator, one of each element in a row. A cell's bar is
 /// divided by how its cases ended.
 pub fn atlas(atlas: &Atlas) -> Drawing {
-    const MARGIN: [f64; 2] = [96.0, 64.0];
+    const MARGIN: [f64; 2] = [104.0, 64.0];
     const GAP: f64 = 56.0;
     /// Smallest width, which the key needs.
     const LEGEND: f64 = 680.0;

@@ -41,15 +41,15 @@ pub struct LoadCurve {
 const LARGEST_FACTOR: f64 = 1.25;
 /// Number of samples: enough for a smooth line.
 const SAMPLES: u32 = 50;
-/// Number of secants by which the load at a limit is found between two samples.
-const SECANTS: u32 = 5;
+/// Number of bisections by which the load at a limit is found between two samples.
+const BISECTIONS: u32 = 16;
 /// Error limits of linear theory, percent; the article states that it is good to 3–5 %.
 const DEPARTURES: [f64; 3] = [3.0, 5.0, 10.0];
 
 impl LoadCurve {
-    /// Returns the curve, if the scene is valid, and a cantilever with an exact solution and a probe at its tip.
+    /// Returns the curve, if the scene can be simulated, and is a cantilever with an exact solution.
     pub fn new(scene: &Scene) -> Option<Self> {
-        scene.validate().ok()?;
+        Simulation::new(scene).ok()?;
         let Some(ExactBeam::Cantilever(beam)) = ExactBeam::of(scene) else { return None };
         let height = scene.beam.as_ref()?.height;
         let linear = beam.linear_tip_displacement();
@@ -67,15 +67,12 @@ impl LoadCurve {
         let samples: Vec<Sample> = std::iter::once(Sample::default()).chain(loaded.iter().map(sample)).collect();
         let departure = |percent: f64| {
             let pair = samples.windows(2).find(|pair| pair[1].linear_error_percent() > percent)?;
-            let ([mut below, mut beyond], mut closest) = ([pair[0], pair[1]], pair[1]);
-            for _ in 0..SECANTS {
-                let [from, to] = [below, beyond].map(|sample| sample.linear_error_percent());
-                let at = below.factor + (beyond.factor - below.factor) * (percent - from) / (to - from);
-                let between = sample(beam.path(at, 1).last()?);
-                *(if between.linear_error_percent() > percent { &mut beyond } else { &mut below }) = between;
-                closest = between;
+            let (mut below, mut beyond) = (pair[0].factor, pair[1]);
+            for _ in 0..BISECTIONS {
+                let middle = sample(beam.path(0.5 * (below + beyond.factor), 1).last()?);
+                if middle.linear_error_percent() > percent { beyond = middle } else { below = middle.factor }
             }
-            Some((percent, closest))
+            Some((percent, beyond))
         };
         let departures = DEPARTURES.into_iter().filter_map(departure).collect();
         Some(Self { samples, buckles_at, departures })

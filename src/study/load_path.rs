@@ -134,11 +134,14 @@ impl LoadPath {
     /// that its own search has met.
     pub fn to_result(simulation: &Simulation, observe: Observer<'_>) -> Option<PathSummary> {
         let search = simulation.equilibrium().filter(|_| simulation.status().is_success())?;
-        if let Some(path) = Self::from_rest(simulation, observe) {
+        let (problem, events) = (simulation.problem(), search.path_events().filter(|_| !simulation.is_linear()));
+        // A search that has met a critical point has followed the path to its end; the work of supports it has not.
+        let has_event = events.as_ref().is_some_and(|path| path.jump.is_some() || !path.bifurcations.is_empty());
+        let follows = !has_event || problem.supports().move_the_body();
+        if let Some(path) = follows.then(|| Self::from_rest(simulation, observe)).flatten() {
             return Some(path.to(simulation.displacement()));
         }
-        let events = search.path_events().filter(|_| !simulation.is_linear())?;
-        Some(PathSummary::of(simulation.problem(), events.jump, &events.bifurcations, f64::INFINITY))
+        events.map(|events| PathSummary::of(problem, events.jump, &events.bifurcations, f64::INFINITY))
     }
 
     /// Follows the load path of a simulation's scene, through the full load to a critical load next to it; `None` for a motion,

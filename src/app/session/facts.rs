@@ -12,7 +12,7 @@ use crate::app::task::keyed::{Computed, Keyed, SentScene, facts};
 use crate::app::task::solve::Quality;
 use crate::app::task::thread::{Reporter, Task, Update};
 use crate::format::number;
-use crate::scene::{DynamicsSettings, SolverSettings};
+use crate::scene::{DynamicsSettings, Place, SolverSettings};
 use crate::simulation::Equilibrium;
 use crate::study::limits::MethodLimits;
 use crate::study::{
@@ -73,7 +73,9 @@ fn curve(scene: &Scene, observe: Observer<'_>) -> Computed<Curve> {
             n = number(MAX_CURVE_UNKNOWNS as f64)
         ));
     }
-    let (path, beam) = (LoadPath::of(scene, observe), LoadCurve::new(scene));
+    // Beam theory has the displacement of the tip.
+    let is_at_tip = scene.probes.first().is_some_and(|probe| probe.place == Place::from("right"));
+    let (path, beam) = (LoadPath::of(scene, observe), is_at_tip.then(|| LoadCurve::new(scene)).flatten());
     let has_curve = path.is_some() || beam.is_some();
     let curve = || Curve { scene: SentScene(scene.clone()), path: path.unwrap_or_default(), beam };
     Ok(has_curve.then(curve))
