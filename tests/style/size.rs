@@ -10,23 +10,23 @@ use crate::files::rust_files;
 
 /// Parts with their files and folders, and their largest number of lines.
 const LINES: &[(&str, &[&str], usize)] = &[
-    ("app", &["src/app"], 21_838),
-    ("study", &["src/study"], 6_385),
+    ("app", &["src/app"], 21_809),
+    ("study", &["src/study"], 5_200),
     ("model", &["src/model", "src/scene"], 3_093),
-    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_243),
+    ("method", &["src/method", "src/continuation.rs", "src/step.rs"], 3_228),
     ("simulation", &["src/simulation"], 2_400),
     ("assembly", &["src/assembly"], 2_926),
-    ("cli", &["src/cli"], 2_199),
-    ("dynamics", &["src/dynamics"], 1_897),
+    ("cli", &["src/cli"], 2_193),
+    ("dynamics", &["src/dynamics"], 1_887),
     ("render", &["src/render"], 1_860),
     ("element", &["src/element"], 1_998),
     ("mesh", &["src/mesh"], 1_914),
-    ("plot", &["src/plot"], 837),
-    ("the rest of src", &["src"], 5_007),
-    ("tests", &["tests"], 19_413),
+    ("plot", &["src/plot"], 756),
+    ("the rest of src", &["src"], 5_001),
+    ("tests", &["tests"], 19_412),
 ];
 /// Largest number of lines of `src`.
-const SRC: usize = 55_597;
+const SRC: usize = 54_265;
 /// Largest number of crates of the program on Linux.
 const CRATES: usize = 236;
 
