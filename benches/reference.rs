@@ -31,7 +31,11 @@ fn main() {
         let go_on = &|_: warpbeam::Progress<'_>| ControlFlow::Continue(());
         let (source, own_error) = match scene.analysis {
             Analysis::Dynamic => match StudyReference::new(&scene, Extent::Quick, go_on) {
-                Ok(found) => (found.text.to_string(), Some(found.error_percent)),
+                Ok(found) => {
+                    let text = found.text.to_string();
+                    // The error has a column.
+                    (text.split(" (").next().unwrap_or_default().to_owned(), Some(found.error_percent))
+                }
                 Err(error) => (error.to_string(), None),
             },
             _ => match Reference::find(&scene, Some(&simulation), Extent::Quick, go_on) {

@@ -19,7 +19,7 @@ pub fn atlas(atlas: &Atlas) -> Drawing {
     let columns = distinct(atlas.entries.iter().map(|entry| &entry.column));
     let panel_size = [MARGIN[0] + CELL[0] * columns.len() as f64, GAP + CELL[1] * rows as f64];
     let mut drawing = Drawing::default();
-    let width = (20.0 + panel_size[0] * ElementKind::all().count() as f64).max(LEGEND);
+    let width = (60.0 + panel_size[0] * ElementKind::all().count() as f64).max(LEGEND);
     drawing.page([width, MARGIN[1] + panel_size[1] * names.len() as f64], 0.0, "");
     let mut x = 20.0;
     for (id, color) in atlas.outcomes.iter().map(|outcome| outcome.entry()) {

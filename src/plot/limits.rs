@@ -22,7 +22,7 @@ pub fn limits(limits: &MethodLimits, scene: &Scene) -> Drawing {
     let (across, strips) = ([150.0, 760.0], 44.0 + curve[usize::from(has_curve)]);
     let chart = LimitsChart { limits, loads, across, curve, has_curve, strips, row: 26.0, height: 18.0 };
     let (bottom, mut drawing) = (chart.bottom(), Drawing::default());
-    drawing.page([1010.0, bottom + 84.0], 20.0, &scene.name);
+    drawing.page([1060.0, bottom + 84.0], 20.0, &scene.name);
     chart.grid(&mut drawing);
     // The scene's own load.
     if limits.contains(1.0) {
