@@ -552,7 +552,7 @@ impl PathFollower {
                     if jump.is_far(equations.problem) {
                         self.events.jump.get_or_insert(jump);
                     }
-                    next.path.locates_all = self.path.locates_all;
+                    (next.path.locates_all, next.path.max_by_factor) = (self.path.locates_all, self.path.max_by_factor);
                     self.parts.push(PathPart::Landing(Box::new(next.last.clone())));
                     *self = Self {
                         parts: std::mem::take(&mut self.parts),

@@ -164,8 +164,7 @@ fn on_fine_meshes(
             }
             // The budget is spent; use the previous meshes.
             (Status::Running, Some(_)) => break,
-            // If a finer mesh has no equilibrium near the coarser one's, the latter was not a solution of the continuous
-            // problem.
+            // Without an equilibrium on a finer mesh, the coarser one was no solution of the continuous problem.
             (_, Some(_)) => return Err(StudyError::NoReference),
         }
         let is_fine_enough = solutions.len() >= MIN_MESHES && is_good_enough(&solved, extent);

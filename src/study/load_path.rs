@@ -110,6 +110,8 @@ pub struct LoadPath {
 
 /// Number of rows of a path, which are drawn and between which the work of supports is integrated.
 const ROWS: u32 = 60;
+/// Smallest number of steps of a path: longer ones might leap over a limit point, to an equilibrium beyond its jump.
+const STEPS: f64 = 15.0;
 /// Largest number of solves along a path.
 const MAX_SOLVES: u32 = 6000;
 /// Number of unknowns above which a path is too expensive to be computed as part of a solve.
@@ -240,6 +242,8 @@ impl Tracer {
         self.row = if is_complete { 1 } else { ROWS };
         let mut follower = PathFollower::start(&mut self.equations(), to)?;
         follower.path.locates_all = is_complete;
+        let has_own_limit = self.problem.supports().move_the_body();
+        follower.path.max_by_factor = if has_own_limit { follower.path.max_by_factor } else { to / STEPS };
         self.visit(&follower, &follower.last);
         self.mark();
         let end = loop {

@@ -16,8 +16,7 @@ const MIN_REPETITIONS: usize = 3;
 const LONG: u32 = 5;
 /// Longest time of the repetitions of a solve.
 const TIME_OF_SOLVE: Duration = Duration::from_secs(2);
-/// Time of the repetitions in a web page, whose clock advances by steps of 0.1 ms: the mean over many repetitions is
-/// finer than a step.
+/// Time of the repetitions in a web page, whose clock advances by 0.1 ms: the mean over many repetitions is finer.
 const COARSE_CLOCK: Option<Duration> =
     if cfg!(target_arch = "wasm32") { Some(Duration::from_millis(100)) } else { None };
 /// Held while solves are timed: two timed at once would slow each other down.

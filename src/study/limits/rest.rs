@@ -18,8 +18,7 @@ pub(super) fn limits(
     observe: Observer<'_>,
     partial: &(dyn Fn(&MethodLimits) + Sync),
 ) -> Result<MethodLimits> {
-    /// Power of the load above which a displacement grows fast, as next to buckling with an imperfection: there the errors
-    /// have a peak.
+    /// Power of the load above which a displacement grows fast, as next to buckling: errors have a peak there.
     const FAST: f64 = 2.0;
     if scene.probes.is_empty() {
         return Err(StudyError::NoProbe);

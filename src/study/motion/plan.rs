@@ -10,8 +10,7 @@ use crate::study::reference::system_of;
 
 // Values of a quick and of a full study.
 
-/// Longest simulated time, in periods of the body's lowest natural frequency and in time steps of the scene; the longer
-/// one counts.
+/// Longest simulated time, in periods of the body's lowest natural frequency and in time steps; the longer counts.
 const LONGEST: [(f64, f64); 2] = [(2.0, 60.0), (4.0, 120.0)];
 /// Largest number of samples of a path; a longer motion is sampled, and stepped, more coarsely.
 const MAX_SAMPLES: [f64; 2] = [240.0, 480.0];
