@@ -134,10 +134,10 @@ impl LimitPoint {
 }
 
 /// Loads in a row with one value: the first and the last of them.
-type Row<T> = ([f64; 2], T);
+type LoadRange<T> = ([f64; 2], T);
 
 /// Returns the rows of loads with equal values.
-fn rows<T: Copy + PartialEq>(loads: impl Iterator<Item = (f64, T)>) -> Vec<Row<T>> {
+fn rows<T: Copy + PartialEq>(loads: impl Iterator<Item = (f64, T)>) -> Vec<LoadRange<T>> {
     let loads: Vec<(f64, T)> = loads.collect();
     let rows = loads.chunk_by(|(_, a), (_, b)| a == b);
     rows.map(|row| ([row[0].0, row[row.len() - 1].0], row[0].1)).collect()
@@ -173,7 +173,7 @@ impl Strip {
     }
 
     /// Returns the rows of loads with one answer.
-    fn rows(&self, property: Property) -> Vec<Row<Option<bool>>> {
+    fn rows(&self, property: Property) -> Vec<LoadRange<Option<bool>>> {
         rows(self.answers(property).map(|(point, answer)| (point.factor, answer)))
     }
 
@@ -196,7 +196,7 @@ impl Strip {
     /// not converge at the smallest load, and the last the largest load if it does not converge there.
     pub fn fails(&self) -> Vec<[f64; 2]> {
         let rows = self.rows(Property::Converges);
-        let around = |(i, (range, _)): (usize, &Row<Option<bool>>)| {
+        let around = |(i, (range, _)): (usize, &LoadRange<Option<bool>>)| {
             let before = i.checked_sub(1).map_or(0.0, |before| rows[before].0[1]);
             [before, rows.get(i + 1).map_or(range[1], |(after, _)| after[0])]
         };

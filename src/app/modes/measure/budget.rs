@@ -405,12 +405,12 @@ fn plot(ui: &mut Ui, budget: &BudgetView<'_>, actions: &mut Vec<Action>) {
     let [most_time, most_error] =
         [budget.demand.max_time_ms, budget.demand.max_error_percent].map(Option::unwrap_or_default);
     drawing.clip(Some(area));
-    let [x, y] = plot.place([most_time, most_error]);
+    let ([x, y], own) = (plot.place([most_time, most_error]), Setting::of(budget.scene));
     drawing.line(&[[x, top], [x, bottom]], Ink::Limit, 1.0, DASHES);
     drawing.line(&[[left, y], [right, y]], Ink::Limit, 1.0, DASHES);
     drawing.clip(None);
     plot.draw(&mut drawing);
-    let applied = plot.marks.iter().find(|(_, m)| m.applied() == Setting::of(budget.scene)).map(|(at, _)| *at);
+    let applied = plot.marks.iter().find(|(_, m)| m.applied() == own).map(|(at, _)| *at);
     if let Some([x, y]) = applied.or(budget.shown.filter(|_| budget.current).map(|shown| plot.place(shown))) {
         drawing.line(&[[x - 9.0, y], [x + 9.0, y]], Ink::Text, 2.0, &[]);
         drawing.line(&[[x, y - 9.0], [x, y + 9.0]], Ink::Text, 2.0, &[]);
